@@ -213,6 +213,9 @@ std::string ToJson(const Summary& s) {
   json["final_error_lateral_mm"] = OrNull(s.final_error_lateral_mm);
   json["final_error_depth_mm"] = OrNull(s.final_error_depth_mm);
   json["final_error_deg"] = OrNull(s.final_error_deg);
+  json["error_px_max"] = OrNull(s.error_px_max);
+  json["camera_path_m"] = OrNull(s.camera_path_m);
+  json["camera_excursion_m"] = OrNull(s.camera_excursion_m);
   json["tracking_error_px_rms"] = OrNull(s.tracking_error_px_rms);
   json["tracking_error_mm_rms"] = OrNull(s.tracking_error_mm_rms);
   json["path_error_mm_rms"] = OrNull(s.path_error_mm_rms);

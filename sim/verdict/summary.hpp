@@ -71,7 +71,10 @@ struct Summary : run::RunFigures {
   std::optional<double> final_error_mm;
   std::optional<double> final_error_lateral_mm;
   std::optional<double> final_error_depth_mm;
-  std::optional<double> final_error_deg;  // none for a sphere, which has no orientation
+  std::optional<double> final_error_deg;     // none for a sphere, which has no orientation
+  std::optional<double> error_px_max;        // over the run; none if the target was behind the camera
+  std::optional<double> camera_path_m;       // length of the camera's way
+  std::optional<double> camera_excursion_m;  // largest distance from the straight line between its ends
   // Moving targets: over the second half.
   std::optional<double> tracking_error_mm_rms;
   std::optional<double> tracking_error_px_rms;

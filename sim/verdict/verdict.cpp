@@ -33,6 +33,7 @@ Verdict::Verdict(const VerdictConfig& config)
 void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   if (config_.has_eye) {
     const TargetError error = ErrorOf(truth, config_.eye, config_.goal);
+    camera_path_.Add(truth.X_BC.translation());
     AddSample({truth.stamp_ns, error.error_px, error.error_C, error.judged_m, error.error_rad.value_or(0.0)});
   }
 
@@ -66,6 +67,7 @@ void Verdict::AddSample(const Sample& sample) {
   if (!first_px_) {
     first_px_ = sample.error_px;
   }
+  most_px_ = std::max(most_px_, sample.error_px);
   window_.push_back(sample);
   while (window_.front().stamp_ns <= sample.stamp_ns - kWindowNs) {
     window_.pop_front();
@@ -256,6 +258,11 @@ void Verdict::FillStill(Summary& summary) const {
     worst_deg = std::max(worst_deg, kDegPerRad * sample.error_rad);
   }
   const auto n = static_cast<double>(window_.size());
+  summary.camera_path_m = camera_path_.Length();
+  summary.camera_excursion_m = camera_path_.Excursion();
+  if (std::isfinite(most_px_)) {
+    summary.error_px_max = most_px_;
+  }
   if (std::isfinite(worst_px)) {
     summary.final_error_px_rms = std::sqrt(px2 / n);
   }

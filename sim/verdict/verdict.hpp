@@ -13,6 +13,7 @@
 #include "sim/scenario/commanded_motion.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/verdict/barriers.hpp"
+#include "sim/verdict/camera_path.hpp"
 #include "sim/verdict/contact_count.hpp"
 #include "sim/verdict/limit_book.hpp"
 #include "sim/verdict/notice_book.hpp"
@@ -90,7 +91,9 @@ class Verdict {
   UnwantedMotion unwanted_;
   std::deque<Sample> window_;       // of the last half second
   std::optional<double> first_px_;  // error at the start
-  bool is_outside_ = false;         // the last sample was not settled
+  double most_px_ = 0.0;            // largest error
+  CameraPath camera_path_;
+  bool is_outside_ = false;  // the last sample was not settled
   std::optional<double> last_outside_s_;
   double second_half_px2_ = 0.0;        // sum of squares of the image error [px^2]
   double second_half_m2_ = 0.0;         // sum of squares of the position error [m^2]

@@ -93,6 +93,7 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
               "the camera is guarded as a capsule of this radius from the flange to its lens; 0: unguarded");
   Fields(fields, c.safety);
   keys.Renamed("safety.carry_load", "safety.carried_torque_fraction");
+  keys.Renamed("servo.interaction", "servo.law");
   keys.Renamed("safety.face_tilt_max", "safety.disc_tilt_max");
   keys.Renamed("safety.hand_clearance", "safety.self_clearance");
   keys.Renamed("safety.link_radius", "safety.link_clearance");

@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 constexpr int kRuns = 1000;
 constexpr int kRunsWithCases = 20;
 constexpr int kRunsOfFindings = 300;
+constexpr int kRunsOfLaws = 30;
 
 // --set must not change what the sampler sets or relies on.
 void CheckAssignments(const std::vector<std::string>& assignments) {
@@ -109,7 +110,10 @@ int JobsOf(const AtlasArguments& arguments) {
 
 int RunsOf(const AtlasArguments& arguments) {
   const bool has_cases = arguments.robustness || arguments.tornado || arguments.margin;
-  return arguments.runs.value_or(arguments.findings ? kRunsOfFindings : has_cases ? kRunsWithCases : kRuns);
+  return arguments.runs.value_or(arguments.findings ? kRunsOfFindings
+                                 : arguments.laws   ? kRunsOfLaws
+                                 : has_cases        ? kRunsWithCases
+                                                    : kRuns);
 }
 
 robustness::Spec TruthOf(const AtlasArguments& arguments) {
@@ -145,13 +149,16 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   CLI::Option* findings = kind->add_flag(
       "--findings", arguments.findings,
       "runs of ball-exciting: is what they find out about wrong beliefs true, and as sure as they say");
+  CLI::Option* laws =
+      kind->add_flag("--laws", arguments.laws,
+                     "all visual laws from the same starts: the four canonical tasks, and random ones");
   kind->require_option(1);
   atlas
       ->add_option(
           "--runs", arguments.runs,
           fmt::format("number of random starts; default: {}; with --tornado, --margin or --robustness: {}; "
-                      "with --findings, of runs: {}",
-                      kRuns, kRunsWithCases, kRunsOfFindings))
+                      "with --findings, of runs: {}; with --laws, for each law: {}",
+                      kRuns, kRunsWithCases, kRunsOfFindings, kRunsOfLaws))
       ->check(CLI::Range(1, 100000))
       ->excludes(faults);
   AddTruth(*atlas, arguments, faults, robust);
@@ -159,13 +166,13 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
     atlas->get_option(option)->excludes(contact);
   }
   for (const char* option : {"--truth", "--truth-size", "--tornado", "--margin"}) {
-    atlas->get_option(option)->excludes(findings);
+    atlas->get_option(option)->excludes(findings)->excludes(laws);
   }
   atlas
-      ->add_option(
-          "--only", arguments.only,
-          "with --faults: only cells whose name (such as ball.approach.torque_loss.severe) contains "
-          "this; with --robustness: only this target; with --contact: only this motion; may be repeated")
+      ->add_option("--only", arguments.only,
+                   "with --faults: only cells whose name (such as ball.approach.torque_loss.severe) contains "
+                   "this; with --robustness: only this target; with --contact: only this motion; "
+                   "with --laws: only this law; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false)
@@ -194,7 +201,8 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->excludes(findings);
   atlas->add_option("--out", arguments.out,
                     "folder for the files; default: out/atlas-<target>, out/atlas-faults, "
-                    "out/atlas-robustness, out/atlas-contact or out/atlas-findings");
+                    "out/atlas-robustness, out/atlas-contact, out/atlas-findings or "
+                    "out/atlas-laws");
   atlas->add_flag("--resume", arguments.resume, "keep the finished runs in the folder, do the rest");
   atlas
       ->add_flag("--draw-only", arguments.draw_only,
@@ -203,6 +211,7 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->excludes(robust)
       ->excludes(contact)
       ->excludes(findings)
+      ->excludes(laws)
       ->excludes(atlas->get_option("--truth"))
       ->excludes(atlas->get_option("--truth-size"))
       ->excludes(atlas->get_option("--tornado"))
@@ -235,6 +244,9 @@ int Atlas(const AtlasArguments& arguments) {
   }
   if (arguments.findings) {
     return FindingsAtlas(arguments);
+  }
+  if (arguments.laws) {
+    return LawsAtlas(arguments);
   }
   CheckAssignments(arguments.assignments);
   if (arguments.draw_only) {

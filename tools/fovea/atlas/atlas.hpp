@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fovea atlas: the convergence rate of simulated runs from random starts; with --faults, the outcome of every
 // fault in every mode and stage; with --robustness, what wrong beliefs cost; with --contact, which pushes are
-// detected; with --findings, whether what runs find out about wrong beliefs is true.
+// detected; with --findings, whether what runs find out about wrong beliefs is true; with --laws, all visual
+// laws on the same starts.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,6 +21,7 @@ struct AtlasArguments {
   bool robustness = false;
   bool contact = false;
   bool findings = false;
+  bool laws = false;
   std::string truth;          // a specification; "": none, or the shipped one with --robustness
   std::vector<double> sizes;  // of all its differences
   bool tornado = false;
@@ -49,6 +51,8 @@ int FaultAtlas(const AtlasArguments& arguments);
 int ContactAtlas(const AtlasArguments& arguments);
 // And for --findings.
 int FindingsAtlas(const AtlasArguments& arguments);
+// And for --laws.
+int LawsAtlas(const AtlasArguments& arguments);
 
 // The number of runs in parallel; of starts.
 int JobsOf(const AtlasArguments& arguments);

@@ -137,6 +137,9 @@ Json ToJson(const Row& row) {
   json["final_error_px_rms"] = OrNull(row.final_error_px);
   json["final_error_mm"] = OrNull(row.final_error_mm);
   json["final_error_deg"] = OrNull(row.final_error_deg);
+  json["error_px_max"] = OrNull(row.error_px_max);
+  json["camera_path_m"] = OrNull(row.camera_path_m);
+  json["camera_excursion_m"] = OrNull(row.camera_excursion_m);
   json["limits"] = row.limits;
   json["end"] = {{"mode", row.end_mode}, {"reason", row.end_reason}};
   json["log_hash"] = row.log_hash;
@@ -161,6 +164,9 @@ void ReadResult(const nlohmann::json& json, Row& row) {
   row.final_error_px = NumberOrNone(json.at("final_error_px_rms"));
   row.final_error_mm = NumberOrNone(json.at("final_error_mm"));
   row.final_error_deg = NumberOrNone(json.at("final_error_deg"));
+  row.error_px_max = NumberOrNone(json.at("error_px_max"));
+  row.camera_path_m = NumberOrNone(json.at("camera_path_m"));
+  row.camera_excursion_m = NumberOrNone(json.at("camera_excursion_m"));
   row.limits = json.at("limits").get<std::map<std::string, double>>();
   row.end_mode = json.at("end").at("mode");
   row.end_reason = json.at("end").at("reason");

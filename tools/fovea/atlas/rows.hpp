@@ -28,7 +28,7 @@ struct Drawn {
 // What is true of some runs beyond the settings of their atlas.
 struct Case {
   std::string name;                // "": the atlas has only this one
-  std::vector<std::string> truth;  // assignments of [truth]
+  std::vector<std::string> truth;  // assignments of [truth], or of a law
   bool is_trial = false;           // the simulator may refuse it; no pictures are kept
 };
 
@@ -48,9 +48,12 @@ struct Row {
   std::optional<double> final_error_px;
   std::optional<double> final_error_mm;
   std::optional<double> final_error_deg;
-  std::map<std::string, double> limits;  // largest used share of each limit
-  std::string end_mode;                  // of the servo, at the end of the run
-  std::string end_reason;                // of Hold; "" otherwise
+  std::optional<double> error_px_max;        // of the run
+  std::optional<double> camera_path_m;       // length of the camera's way
+  std::optional<double> camera_excursion_m;  // its largest distance from the straight line between its ends
+  std::map<std::string, double> limits;      // largest used share of each limit
+  std::string end_mode;                      // of the servo, at the end of the run
+  std::string end_reason;                    // of Hold; "" otherwise
   std::string log_hash;
 
   // It ended as a run from which no way leads to the goal has to end.
