@@ -251,31 +251,20 @@ class Run {
     return options_.interrupt != nullptr && options_.interrupt->Came();
   }
 
-  void EndEarly() {
+  void EndEarly(bool interrupted) {
+    interrupted_ = interrupted;
     stalling_->EndAt(0);
     shell_->loop()->Stop();  // after the current tick, which is still recorded
-  }
-  void EndInterrupted() {
-    interrupted_ = true;
-    EndEarly();
-  }
-
-  // By run.settled_s. In lockstep only the servo's thread uses the verdict.
-  [[nodiscard]] bool HasSettled(std::int64_t now_ns) const {
-    const double settled_s = about_.scenario.run.settled_s;
-    const std::optional<double> since_s = verdict_->goal_kept_since_s();
-    return settled_s > 0.0 && WaitsForFrames() && since_s &&
-           static_cast<double>(now_ns) * 1e-9 - *since_s >= settled_s;
   }
 
   // Passes the measurements that are due to the servo. Called between two ticks, on the servo's thread.
   bool HandOver(std::int64_t now_ns, bool wait) {
     if (IsInterrupted() && now_ns < EndNs()) {
-      EndInterrupted();
+      EndEarly(/*interrupted=*/true);
       return true;
     }
-    if (wait && HasSettled(now_ns)) {
-      EndEarly();
+    if (wait && verdict_->HasKeptGoalFor(about_.scenario.run.settled_s)) {
+      EndEarly(/*interrupted=*/false);
       return true;
     }
     if (wait) {
@@ -302,7 +291,7 @@ class Run {
         throw std::runtime_error(board_->failure() + "; the arm's brakes were closed");
       }
       if (live_ && !live_->WaitForTick(now_ns, [this] { return IsInterrupted(); })) {
-        EndInterrupted();
+        EndEarly(/*interrupted=*/true);
         return true;
       }
       return HandOver(now_ns, /*wait=*/true);

@@ -2,9 +2,10 @@
 // The way that the true camera takes in a run, to the millimetre.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <vector>
+
+#include "sim/world/world.hpp"
 
 namespace fovea::sim {
 

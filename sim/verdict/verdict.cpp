@@ -37,7 +37,7 @@ void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
     AddSample({truth.stamp_ns, error.error_px, error.error_C, error.judged_m, error.error_rad.value_or(0.0)});
   }
 
-  const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns);
+  const double t_s = last_s_ = 1e-9 * static_cast<double>(truth.stamp_ns);
   const bool rests = truth.dq.cwiseAbs().maxCoeff() < kAtRest;
   at_rest_since_s_ = rests ? std::optional(at_rest_since_s_.value_or(t_s)) : std::nullopt;
   if (config_.circle && t_s >= config_.circle->lead_s) {

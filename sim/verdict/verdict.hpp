@@ -51,8 +51,10 @@ class Verdict {
   void AddTruth(const Truth& truth, hal::Mode mode);
   void AddRecord(const hal::TickRecord& record);
 
-  // By the truth so far: since then within the bounds of `converged`; none if not.
-  [[nodiscard]] std::optional<double> goal_kept_since_s() const { return goal_kept_since_s_; }
+  // True if, by the truth so far, it has been within the bounds of `converged` for `time_s`, which is not 0.
+  [[nodiscard]] bool HasKeptGoalFor(double time_s) const {
+    return time_s > 0.0 && goal_kept_since_s_ && last_s_ - *goal_kept_since_s_ >= time_s;
+  }
 
   // Fills in everything that follows from truth and records. Call it after both threads have ended, and after
   // the number of frames is in `summary`.
@@ -103,6 +105,7 @@ class Verdict {
   double home_error_ = 0.0;  // largest joint error to arm.q_ready, at the last step [rad]
   std::optional<double> at_rest_since_s_;
   std::optional<double> goal_kept_since_s_;
+  double last_s_ = 0.0;  // time of the last truth
 
   // from the records
   LimitBook reference_;

@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(All, VispLaws,
                                          Pair{config::Law::kDesired, VispLaw::kDesired},
                                          Pair{config::Law::kPbvs, VispLaw::kPbvs},
                                          Pair{config::Law::kHybrid, VispLaw::kHybrid}),
-                         [](const auto& info) { return config::TraitsOf(info.param.ours).name; });
+                         [](const auto& given) { return config::TraitsOf(given.param.ours).name; });
 
 }  // namespace
 }  // namespace fovea::test

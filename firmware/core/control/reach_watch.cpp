@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/reach_watch.hpp"
 
+#include "firmware/core/control/goal_size.hpp"
 #include "firmware/core/control/way_to_goal.hpp"
 #include "fovea/hal/types.hpp"
 
@@ -15,7 +16,7 @@ constexpr double kMovedM = 0.02;             // a target that has moved this far
 bool IsBlocked(const config::LawConfig& config, const features::FeatureState& feature,
                const VisualLawOutput& law, const model::Mat6N& J_C, const model::VecN& dq,
                hal::LimitSet limits) noexcept {
-  return (limits & kBarriers) != 0 && law.e.norm() > kGoalNearFraction * feature.s_star.norm() &&
+  return (limits & kBarriers) != 0 && law.e.norm() > kGoalNearFraction * GoalSize(feature) &&
          Progress(feature, law.ds_cmd, J_C, dq) < config.unreachable_progress;
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/features/hybrid.hpp"
 
-#include <cmath>
-
 #include "firmware/core/features/pose.hpp"
+#include "firmware/core/model/log.hpp"
 
 namespace fovea::features {
 
@@ -17,8 +16,8 @@ bool HybridFeature::Compute(const TargetInCamera& target, FeatureState& state) c
   const double Z = target.X_CO.p.z();
   state.Resize(Dim());
   state.s.head<2>() = origin.xy;
-  state.s[2] = std::log(Z);
-  state.s_star.head<3>() << p_star.x() / p_star.z(), p_star.y() / p_star.z(), std::log(p_star.z());
+  state.s[2] = model::Log(Z);
+  state.s_star.head<3>() << p_star.x() / p_star.z(), p_star.y() / p_star.z(), model::Log(p_star.z());
   state.ds_dt_target.head<2>() = origin.dxy_dt_target;
   state.ds_dt_target[2] = target.v_BO_C.z() / Z;
   state.L_s.topRows<2>() = origin.L;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/core/control/goal_size.hpp"
 #include "firmware/core/features/equal_turn.hpp"
 #include "firmware/core/features/hold_orientation.hpp"
 #include "firmware/core/guard/following.hpp"
@@ -221,8 +222,8 @@ void ServoTask::NoteSteering() noexcept {
     return;
   }
   const model::Vec6 V_BC_C = state_.J_C.lazyProduct(state_.reference.dq);
-  estimate::WatchSteering(config_.predict, state_.law.e.norm() / state_.feature.s_star.norm(),
-                          V_BC_C.head<3>().norm(), state_.eye);
+  const double share = state_.law.e.norm() / control::GoalSize(state_.feature);
+  estimate::WatchSteering(config_.predict, share, V_BC_C.head<3>().norm(), state_.eye);
 }
 
 }  // namespace fovea::task

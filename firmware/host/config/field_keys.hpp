@@ -16,8 +16,8 @@ class FieldKeys {
  public:
   explicit FieldKeys(KeyTable& keys) : keys_(keys) {}
 
-  // Binds the key of a derived field: `add` adds the key at the field's place in its list. Every derived
-  // field with a meaning needs a bound key.
+  // Binds the key of a derived field, or of a choice: `add` adds the key at the field's place in its list.
+  // Every derived field with a meaning needs a bound key.
   using Add = std::function<void(KeyTable& keys, const Field& field)>;
   void Bind(const std::string& key, Add add) { bound_[key] = std::move(add); }
 
@@ -31,7 +31,11 @@ class FieldKeys {
   }
   template <class Enum, class Names>
   void Choice(const Field& field, Enum& value, const Names& names) {
-    keys_.Choice(field.key, value, names, field.meaning);
+    if (bound_.count(field.key) > 0) {
+      AddBound(field);  // a choice with a further one, such as "auto"
+    } else {
+      keys_.Choice(field.key, value, names, field.meaning);
+    }
   }
   template <class T>
   void PerJoint(const Field& field, T& /*values*/, double /*min*/, double /*max*/) {

@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+#include "firmware/core/model/log.hpp"
+
 namespace fovea::model {
 namespace {
 
@@ -70,6 +72,31 @@ TEST(Atan2Test, IsExactOnTheAxesAndNanForNonFiniteInput) {
   EXPECT_EQ(Atan2(-3.0, 0.0), -0.5 * kPi);
   EXPECT_TRUE(std::isnan(Atan2(std::nan(""), 1.0)));
   EXPECT_TRUE(std::isnan(Atan2(1.0, std::numeric_limits<double>::infinity())));
+}
+
+TEST(LogTest, IsWithinItsStatedError) {
+  std::mt19937_64 engine(3);
+  for (const double size : {0.01, 0.7, 2.0, 700.0}) {
+    std::uniform_real_distribution<double> uniform(-size, size);
+    long double worst = 0.0L;
+    for (int i = 0; i < 1'000'000; ++i) {
+      const double x = std::exp(uniform(engine));
+      const long double exact = std::log(static_cast<long double>(x));
+      worst = std::max(worst, std::fabs(static_cast<long double>(Log(x)) - exact) /
+                                  std::max(1.0L, std::fabs(exact) / 2.0L));
+    }
+    std::cout << "|ln x| <= " << size << ": worst error " << static_cast<double>(worst) << "\n";
+    EXPECT_LT(worst, 4e-16L);
+  }
+  EXPECT_EQ(Log(1.0), 0.0);
+}
+
+TEST(LogTest, OnlyOfNormalPositiveNumbers) {
+  for (const double x : {0.0, -0.0, -1.0, 1e-310, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    EXPECT_TRUE(std::isnan(Log(x))) << x;
+  }
+  EXPECT_FALSE(std::isnan(Log(std::numeric_limits<double>::max())));
+  EXPECT_FALSE(std::isnan(Log(std::numeric_limits<double>::min())));
 }
 
 }  // namespace

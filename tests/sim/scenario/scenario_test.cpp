@@ -176,5 +176,37 @@ TEST(ScenarioTest, MoreFrictionCompensationThanFrictionIsRefused) {
                config::InputError);
 }
 
+// A law brings its feature with it; without a law, the feature has one.
+TEST(ScenarioTest, LawAndFeatureFitTogether) {
+  using config::Law;
+  using features::FeatureForm;
+  const struct {
+    const char* scenario;
+    std::vector<std::string> assignments;
+    Law law;
+    FeatureForm form;
+  } kRows[]{{"square", {}, Law::kIbvs, FeatureForm::kCorners},
+            {"triangle", {}, Law::kPbvs, FeatureForm::kPose},
+            {"ball", {}, Law::kIbvs, FeatureForm::kSphere},
+            {"square", {"servo.law=pbvs"}, Law::kPbvs, FeatureForm::kPose},
+            {"square", {"servo.feature=pose"}, Law::kPbvs, FeatureForm::kPose},
+            {"square", {"servo.law=hybrid"}, Law::kHybrid, FeatureForm::kHybrid},
+            {"square", {"servo.law=mean", "servo.feature=side"}, Law::kMean, FeatureForm::kSide},
+            {"triangle", {"servo.law=second_order"}, Law::kSecondOrder, FeatureForm::kCorners},
+            {"ball", {"servo.law=pbvs"}, Law::kPbvs, FeatureForm::kPose},
+            {"circle", {"servo.law=desired"}, Law::kDesired, FeatureForm::kCircle}};
+  for (const auto& row : kRows) {
+    const config::ServoConfig servo = DescribeRun(LoadScenario(row.scenario, row.assignments)).servo;
+    EXPECT_EQ(servo.law.law, row.law) << row.scenario;
+    EXPECT_EQ(servo.feature.form, row.form) << row.scenario;
+  }
+}
+
+TEST(ScenarioTest, OnlyARunWithAStillTargetEndsEarly) {
+  EXPECT_NO_THROW(DescribeRun(LoadScenario("ball", {"run.settled_s=1"})));
+  EXPECT_THROW(DescribeRun(LoadScenario("ball-moving", {"run.settled_s=1"})), config::InputError);
+  EXPECT_THROW(DescribeRun(LoadScenario("ball-exciting", {"run.settled_s=1"})), config::InputError);
+}
+
 }  // namespace
 }  // namespace fovea::sim

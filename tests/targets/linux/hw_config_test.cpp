@@ -41,6 +41,11 @@ TEST(HwConfigTest, ContradictingValuesAreRefusedByName) {
       {{"arm.model=slider"}, "arm.model = \"slider\" is not allowed: it has 1 joints"},
       {{"target.kind=circle", "servo.feature=corners"}, "is not allowed for target.kind = \"circle\""},
       {{"target.kind=square", "servo.feature=sphere"}, "servo.feature = \"sphere\" is not allowed"},
+      {{"target.kind=square", "servo.law=pbvs", "servo.feature=corners"},
+       "servo.law = \"pbvs\" is not allowed with servo.feature = \"corners\": allowed are \"auto\" and "
+       "\"pose\""},
+      {{"target.kind=square", "servo.law=mean", "servo.feature=hybrid"},
+       "allowed are \"auto\" and a feature in the image"},
       {{"servo.goal=[0, 0, 0.03]"}, "the third number must be above its radius of 0.04 m"},
       {{"servo.stale_s=2", "servo.coast_s=1"}, "servo.stale_s = 2 is not allowed: at most servo.coast_s"},
       {{"safety.workspace_radius=0.5", "safety.workspace_margin=0.5"}, "below safety.workspace_radius"},
