@@ -165,7 +165,9 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
 // The wish of the law, or of the plan, within the limits. False if it is not finite.
 bool ServoTask::ResolveWish(guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
-  if (!planned && !control::LineOf(config_.law.law).starts_smoothly) {
+  // Such a law commands the acceleration.
+  const bool accelerates = control::LineOf(config_.law.law).starts_smoothly;
+  if (!planned && !accelerates) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s =
         static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
@@ -186,8 +188,10 @@ bool ServoTask::ResolveWish(guard::MotionWish& wish) noexcept {
   }
   wish = guard::MotionWish::Velocity(state_.resolved.dq);
   state_.limits = state_.resolved.limits;
-  if (planned && state_.limits == 0) {
-    wish.ddq = SoundRates(config_, state_.resolved.dq, state_.plan_step.ddq);
+  if (state_.limits == 0 && (planned || accelerates)) {
+    const model::VecN ddq =
+        planned ? state_.plan_step.ddq : model::VecN((wish.dq - state_.reference.dq) / hal::kTickPeriodS);
+    wish.ddq = SoundRates(config_, wish.dq, ddq);
   }
   return true;
 }
