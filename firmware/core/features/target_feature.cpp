@@ -38,7 +38,7 @@ void TakeCovariance(const hal::FeatureMeasurement& measurement, Matrix& cov) noe
 bool TargetFeature::IsListed() const noexcept {
   const TargetTraits& traits = TraitsOf(target);
   bool listed = std::find(traits.forms.begin(), traits.forms.end(), form) != traits.forms.end();
-  if (TakesWholePose(form)) {
+  if (SeesOrientation() && TakesWholePose(form)) {
     listed = listed && corners.num_corners == traits.num_corners;
   }
   return listed && Dim() <= kMaxDim;
