@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <random>
 #include <vector>
@@ -78,13 +79,13 @@ TEST(PlanPartTest, LostPartIsTakenWhenThePlanComesAgain) {
   PlanReceiver receiver;
   Plan plan = RandomPlan(random, 7, 60);
   for (std::size_t lost = 0; lost < 10; ++lost) {
-    plan.stamp_ns = static_cast<std::int64_t>(lost);
+    plan.stamp_ns = static_cast<std::int64_t>(lost) + 1;
     const std::vector<PlanPart> parts = PartsOf(plan);
     ASSERT_EQ(parts.size(), 10U);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       EXPECT_FALSE(i != lost && receiver.Take(parts[i])) << lost;
     }
-    EXPECT_FALSE(receiver.IsWhole());
+    EXPECT_FALSE(receiver.IsWhole() && receiver.plan().stamp_ns == plan.stamp_ns);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       EXPECT_EQ(receiver.Take(parts[i]), i + 1 == parts.size()) << lost << ", " << i;
     }
@@ -117,14 +118,14 @@ TEST(PlanPartTest, PlanArrivesOverALineThatLosesHalf) {
   const std::vector<PlanPart> parts = PartsOf(plan);
   ASSERT_EQ(parts.size(), 42U);
   PlanReceiver receiver;
+  bool is_whole = false;
   int rounds = 0;
-  for (; !receiver.IsWhole() && rounds < 1000; ++rounds) {
+  for (; !is_whole && rounds < 1000; ++rounds) {
     for (const PlanPart& part : parts) {
-      if (!is_lost(line)) {
-        static_cast<void>(receiver.Take(part));
-      }
+      is_whole = (!is_lost(line) && receiver.Take(part)) || is_whole;
     }
   }
+  std::cout << rounds << " rounds of 42 parts\n";
   EXPECT_LE(rounds, 60);
   ExpectSame(receiver.plan(), plan);
 }
@@ -192,7 +193,7 @@ class BadPart : public testing::Test {
     for (const PlanPart& part : parts) {
       EXPECT_FALSE(receiver_.Take(part));
     }
-    EXPECT_FALSE(receiver_.plan().IsFound() && receiver_.received() == receiver_.plan().NumNumbers());
+    EXPECT_FALSE(receiver_.IsWhole() && receiver_.plan().stamp_ns == plan.stamp_ns);
     Plan next = RandomPlan(random_, 7, 5);
     next.stamp_ns = ++stamp_ns_;
     ASSERT_EQ(PartsOf(next).size(), 1U);
