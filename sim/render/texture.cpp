@@ -91,7 +91,8 @@ void Put(Texture& texture, int x, int y, const Colour& colour) {
                    static_cast<std::size_t>(x)) *
                   4;
   for (std::size_t c = 0; c < 3; ++c) {
-    texture.rgba[at + c] = static_cast<std::uint8_t>(std::clamp(colour[c], 0.0F, 1.0F) * 255.0F + 0.5F);
+    const float level = std::clamp(colour[c], 0.0F, 1.0F) * 255.0F + 0.5F;
+    texture.rgba[at + c] = static_cast<std::uint8_t>(level);
   }
   texture.rgba[at + 3] = 255;
 }

@@ -86,6 +86,7 @@ Study RunStudy(const StudyOptions& options) {
   }
   for (std::size_t belief = 0; belief < ComparedBeliefs().size(); ++belief) {
     std::vector<Finding> findings;
+    findings.reserve(jobs.size());
     for (const Job& job : jobs) {
       findings.push_back(FindingOf(runs.SummaryOf(job.name), belief));
     }

@@ -38,10 +38,12 @@ TargetStudy RunTarget(const std::string& target, const std::vector<std::string>&
   const atlas::Scene scene = atlas::LoadScene(target, atlas::SceneAssignments(assignments));
   TargetStudy study{target, TasksFor(scene, options.random, options.seed), {}};
   std::vector<atlas::Start> starts;
+  starts.reserve(study.tasks.tasks.size());
   for (const Task& task : study.tasks.tasks) {
     starts.push_back(task.start);
   }
   std::vector<atlas::Case> cases;
+  cases.reserve(laws.size());
   for (const std::string& law : laws) {
     cases.push_back({law, {"servo.law=" + law}, false});
   }
