@@ -19,7 +19,7 @@ constexpr double kProofRoom = 0.0005;  // a start nearer than this could not be 
 constexpr double kSightRoom = 0.025;
 // Before the edges of the picture, normalised: about what a mount that is turned by 1 degree moves the target
 // by as the hand turns.
-constexpr double kPictureRoom = 0.04;
+constexpr double kPictureRoom = 0.03;
 constexpr double kOutside = 0.05;    // a start with the target further past the picture's bound is refused
 constexpr double kTiltRoom = 0.02;   // before a disc's largest tilt, cosine
 constexpr double kJointRoom = 0.02;  // before the ends of a joint's range [rad, m]
