@@ -22,6 +22,13 @@ float Hash(int x, int y, std::uint32_t seed) {
 
 float Fade(float t) { return t * t * (3.0F - 2.0F * t); }
 
+// Between the values at the four corners of a cell: low left, low right, high left, high right.
+float Blend(float low_0, float low_1, float high_0, float high_1, float tx, float ty) {
+  const float low = low_0 + tx * (low_1 - low_0);
+  const float high = high_0 + tx * (high_1 - high_0);
+  return low + ty * (high - low);
+}
+
 // Smooth noise with one wave per unit. Repeats after `period` units if that is above 0.
 float Noise(float x, float y, std::uint32_t seed, int period = 0) {
   const float fx = std::floor(x);
@@ -37,9 +44,7 @@ float Noise(float x, float y, std::uint32_t seed, int period = 0) {
     }
     return Hash(ix, iy, seed);
   };
-  const float low = at(0, 0) + tx * (at(1, 0) - at(0, 0));
-  const float high = at(0, 1) + tx * (at(1, 1) - at(0, 1));
-  return low + ty * (high - low);
+  return Blend(at(0, 0), at(1, 0), at(0, 1), at(1, 1), tx, ty);
 }
 
 // The largest whole number that is at most `x`; without SSE 4.1 much faster than std::floor.
@@ -68,9 +73,7 @@ class NoiseGrid {
     const float tx = Fade(x - static_cast<float>(column));
     const float ty = Fade(y - static_cast<float>(row));
     const float* here = values_.data() + (row - low_y_) * columns_ + (column - low_x_);
-    const float low = here[0] + tx * (here[1] - here[0]);
-    const float high = here[columns_] + tx * (here[columns_ + 1] - here[columns_]);
-    return low + ty * (high - low);
+    return Blend(here[0], here[1], here[columns_], here[columns_ + 1], tx, ty);
   }
 
  private:

@@ -29,9 +29,12 @@ class CameraPath {
   // The largest distance from the straight line between the way's ends [m].
   [[nodiscard]] double Excursion() const {
     double most = 0.0;
+    if (points_.empty()) {
+      return most;
+    }
+    const Eigen::Vector3d along = points_.back() - points_.front();
+    const double length2 = along.squaredNorm();
     for (const Eigen::Vector3d& p : points_) {
-      const Eigen::Vector3d along = points_.back() - points_.front();
-      const double length2 = along.squaredNorm();
       const double share =
           length2 > 0.0 ? std::clamp((p - points_.front()).dot(along) / length2, 0.0, 1.0) : 0.0;
       most = std::max(most, (p - points_.front() - share * along).norm());

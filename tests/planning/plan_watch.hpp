@@ -24,6 +24,7 @@ struct PlanResidual {
   double solid = HUGE_VAL;       // room before what the guard's proof of a stop allows [m]
   double picture_px = HUGE_VAL;  // room before the picture's bound
   double sight = HUGE_VAL;       // room before the guard's clearance [m]
+  double facing = HUGE_VAL;      // cosine to a flat target's normal, more than is needed for its detection
   double tilt = HUGE_VAL;        // room before a disc's largest tilt, or its tilt at the start: cosine
   double feature = 0.0;          // error at the end
   double start = 0.0;            // distance of the first posture from the start's [rad]
@@ -37,6 +38,7 @@ struct PlanResidual {
     solid = std::min(solid, other.solid);
     picture_px = std::min(picture_px, other.picture_px);
     sight = std::min(sight, other.sight);
+    facing = std::min(facing, other.facing);
     tilt = std::min(tilt, other.tilt);
     feature = std::max(feature, other.feature);
     start = std::max(start, other.start);
@@ -107,6 +109,11 @@ class PlanWatch {
                                      config_.guard.sight_clearance);
     const double least = std::min(config_.guard.view.disc_cosine_min, TiltAt(request_.start.q));
     residual.tilt = std::min(residual.tilt, TiltAt(q) - least);
+    if (config_.feature.SeesOrientation()) {
+      constexpr double kDetected = 0.35;  // the planner's own bound; a start may have less
+      residual.facing =
+          std::min(residual.facing, FacingAt(q) - std::min(kDetected, FacingAt(request_.start.q)));
+    }
     const vision::Intrinsics camera = BallCamera();
     const config::ViewConfig& view = config_.guard.view;
     for (int i = 0; i < outline.num_points; ++i) {
@@ -126,6 +133,14 @@ class PlanWatch {
     model::ComputePoses(config_.arm, q, poses);
     const model::Vec3 ray = request_.X_BO.p - (poses.X_BE * config_.X_EC).p;
     return request_.normal_B.isZero() ? 1.0 : request_.normal_B.dot(ray) / ray.norm();
+  }
+
+  // The cosine between a flat target's normal and the line of sight.
+  [[nodiscard]] double FacingAt(const model::VecN& q) const {
+    model::ArmPoses poses;
+    model::ComputePoses(config_.arm, q, poses);
+    const model::Vec3 ray = request_.X_BO.p - (poses.X_BE * config_.X_EC).p;
+    return request_.X_BO.R.col(2).dot(ray) / ray.norm();
   }
 
   // One tick of the guard with the plan as its wish. True if a limit acts.

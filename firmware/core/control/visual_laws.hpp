@@ -82,7 +82,8 @@ inline features::FeatureVector SecondOrder(const LawScene& scene) noexcept {
 struct VisualLawLine {
   InteractionChoice interaction;
   MotionChoice motion;
-  bool starts_smoothly = false;  // by itself: servo.smooth_start_s does not apply
+  // It starts smoothly by itself: servo.smooth_start_s does not apply.
+  bool commands_acceleration = false;
 };
 
 // In the order of config::Law.

@@ -165,8 +165,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
 // The wish of the law, or of the plan, within the limits. False if it is not finite.
 bool ServoTask::ResolveWish(guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
-  // Such a law commands the acceleration.
-  const bool accelerates = control::LineOf(config_.law.law).starts_smoothly;
+  const bool accelerates = control::LineOf(config_.law.law).commands_acceleration;
   if (!planned && !accelerates) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s =

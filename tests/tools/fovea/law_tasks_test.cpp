@@ -32,8 +32,8 @@ class LawTasks : public testing::TestWithParam<const char*> {};
 TEST_P(LawTasks, StartWhereTheySay) {
   const atlas::Scene scene = atlas::LoadScene(GetParam(), atlas::SceneAssignments({"servo.plans=false"}));
   const Tasks tasks = TasksFor(scene, 3, 5);
-  EXPECT_LE(tasks.skipped.size(), 3U) << "the arm cannot start at all of them";
-  ASSERT_GE(tasks.tasks.size(), 12U);
+  EXPECT_TRUE(tasks.skipped.empty()) << tasks.skipped.front();
+  ASSERT_GE(tasks.tasks.size(), 15U);
   int random = 0;
   for (const Task& task : tasks.tasks) {
     random += task.is_random ? 1 : 0;

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "tools/fovea/faults/runs.hpp"
 
@@ -33,8 +34,9 @@ json RowOf(const Job& job, const json& summary) {
     const double believed = truth.at("believed").at(static_cast<std::size_t>(compared.entry));
     const double actual = truth.at("true").at(static_cast<std::size_t>(compared.entry));
     const bool known = belief.at("known");
-    row.push_back({known, known ? belief.at("difference") : json(0.0), known ? belief.at("sigma") : json(0.0),
-                   compared.is_percent ? 100.0 * (actual / believed - 1.0) : actual - believed});
+    row.push_back(
+        {known, known ? belief.at("difference") : json(0.0), known ? belief.at("sigma") : json(0.0),
+         std::string_view(compared.unit) == "%" ? 100.0 * (actual / believed - 1.0) : actual - believed});
   }
   return row;
 }
@@ -60,12 +62,12 @@ std::vector<Job> JobsOf(const StudyOptions& options) {
 
 const std::vector<Compared>& ComparedBeliefs() {
   static const std::vector<Compared> compared{
-      {"latency", "camera.latency_ms", 0, false, {2.0}},
-      {"mount turn about the camera's x axis", "camera.mount_turn_deg", 0, false, {0.3}},
-      {"mount turn about the camera's y axis", "camera.mount_turn_deg", 1, false, {0.3}},
-      {"mount turn about the camera's z axis", "camera.mount_turn_deg", 2, false, {0.3}},
-      {"focal length", "camera.f_px", 0, true, {0.5}},
-      {"load", "arm.load_mass", 0, false, {0.05}}};
+      {"latency", "camera.latency_ms", 0, "ms", {2.0}},
+      {"mount turn about the camera's x axis", "camera.mount_turn_deg", 0, "deg", {0.3}},
+      {"mount turn about the camera's y axis", "camera.mount_turn_deg", 1, "deg", {0.3}},
+      {"mount turn about the camera's z axis", "camera.mount_turn_deg", 2, "deg", {0.3}},
+      {"focal length", "camera.f_px", 0, "%", {0.5}},
+      {"load", "arm.load_mass", 0, "kg", {0.05}}};
   return compared;
 }
 

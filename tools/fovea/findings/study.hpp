@@ -16,7 +16,7 @@ struct Compared {
   const char* belief;  // its name in a summary's `beliefs`
   const char* truth;   // its key in a summary's `truth`
   int entry;           // of the truth
-  bool is_percent;     // of the believed value
+  const char* unit;    // of the belief; "%": of the believed value
   Goal goal;
 };
 const std::vector<Compared>& ComparedBeliefs();

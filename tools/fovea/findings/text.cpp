@@ -2,6 +2,7 @@
 #include "tools/fovea/findings/text.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -23,14 +24,6 @@ standard deviations in 90 to 99 % of these, and no stated standard deviation is 
 
 )";
 
-const char* UnitOf(const Compared& compared) {
-  if (compared.is_percent) {
-    return "%";
-  }
-  const std::string truth = compared.truth;
-  return truth == "camera.latency_ms" ? "ms" : truth == "camera.mount_turn_deg" ? "deg" : "kg";
-}
-
 std::string Known(const Coverage& c) { return fmt::format("{} of {}", c.known, c.runs); }
 
 std::string Within(const Coverage& c) { return fmt::format("{:.1f} %", 100.0 * c.WithinShare()); }
@@ -46,21 +39,21 @@ std::string Verdict(const Study& study) {
     if (!Meets(c, ComparedBeliefs()[i].goal)) {
       return fmt::format("{}: known in {}, within two standard deviations in {}, sigma up to {:.3g} {}",
                          ComparedBeliefs()[i].belief, Known(c), Within(c), c.sigma_largest,
-                         UnitOf(ComparedBeliefs()[i]));
+                         ComparedBeliefs()[i].unit);
     }
   }
   return fmt::format("in {} runs, what was found out is true and as sure as stated", study.runs);
 }
 
 std::string ToTable(const Study& study) {
-  config::PrintedTable table(config::StyleOf(1));
+  config::PrintedTable table(config::StyleOf(STDOUT_FILENO));
   table.Row("verdict", Verdict(study), IsGood(study) ? config::Paint::kGood : config::Paint::kBad);
   for (std::size_t i = 0; i < study.coverages.size(); ++i) {
     const Coverage& c = study.coverages[i];
     table.WholeRow(ComparedBeliefs()[i].belief,
                    fmt::format("known in {}, {} within two sigma; error {:.3g} {} rms; sigma {:.3g}, at most "
                                "{:.3g}",
-                               Known(c), Within(c), c.error_rms, UnitOf(ComparedBeliefs()[i]), c.sigma_median,
+                               Known(c), Within(c), c.error_rms, ComparedBeliefs()[i].unit, c.sigma_median,
                                c.sigma_largest));
   }
   return table.text();
@@ -72,7 +65,7 @@ std::string ToJson(const Study& study) {
   for (std::size_t i = 0; i < study.coverages.size(); ++i) {
     const Coverage& c = study.coverages[i];
     json["beliefs"][ComparedBeliefs()[i].belief] = {
-        {"unit", UnitOf(ComparedBeliefs()[i])},   {"known", c.known},
+        {"unit", ComparedBeliefs()[i].unit},      {"known", c.known},
         {"within_two_sigma", c.within_two_sigma}, {"error_rms", c.error_rms},
         {"error_largest", c.error_largest},       {"sigma_median", c.sigma_median},
         {"sigma_largest", c.sigma_largest},       {"sigma_most", ComparedBeliefs()[i].goal.sigma_most}};
@@ -92,7 +85,7 @@ std::string ToMarkdown(const Study& study) {
     const Coverage& c = study.coverages[i];
     text += fmt::format("| {} | {} | {} | {:.3g}, {:.3g} {} | {:.3g}, {:.3g} | {:g} |\n",
                         ComparedBeliefs()[i].belief, Known(c), Within(c), c.error_rms, c.error_largest,
-                        UnitOf(ComparedBeliefs()[i]), c.sigma_median, c.sigma_largest,
+                        ComparedBeliefs()[i].unit, c.sigma_median, c.sigma_largest,
                         ComparedBeliefs()[i].goal.sigma_most);
   }
   return text + fmt::format("\nOne of the runs:\n\n```\n{}\n```\n", study.command);

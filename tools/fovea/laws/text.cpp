@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -83,6 +84,26 @@ std::string Random(const TargetStudy& target, const std::vector<std::string>& la
   return text;
 }
 
+// Each run that exceeded a limit or touched something, on a line of its own.
+std::string OffendersInWords(const Study& study) {
+  std::string text;
+  for (const TargetStudy& target : study.targets) {
+    for (const std::string& law : study.laws) {
+      for (std::size_t i = 0; i < target.tasks.tasks.size(); ++i) {
+        const atlas::Row& row = target.rows.at(law).at(i);
+        if (row.limit_violations > 0 || row.contact_ticks > 0) {
+          text += fmt::format(
+              "- **{}, {}, {}**: a limit exceeded or something touched in {} ticks, {} of them contacts; "
+              "{}\n",
+              target.target, law, target.tasks.tasks[i].name, row.limit_violations, row.contact_ticks,
+              row.verdict);
+        }
+      }
+    }
+  }
+  return text.empty() ? "No run exceeded a limit or touched anything.\n" : text;
+}
+
 }  // namespace
 
 OnRandomStarts OnRandom(const TargetStudy& study, const std::string& law) {
@@ -109,7 +130,7 @@ OnRandomStarts OnRandom(const TargetStudy& study, const std::string& law) {
 }
 
 std::string ToTable(const Study& study) {
-  config::PrintedTable table(config::StyleOf(1));
+  config::PrintedTable table(config::StyleOf(STDOUT_FILENO));
   for (const TargetStudy& target : study.targets) {
     for (const std::string& law : study.laws) {
       int canonical = 0;
@@ -169,8 +190,7 @@ std::string ToMarkdown(const Study& study) {
                           Random(target, study.laws));
     }
   }
-  text += KeepsLimits(study) ? "No run exceeded a limit or touched anything.\n"
-                             : "**A run exceeded a limit or touched something.**\n";
+  text += OffendersInWords(study);
   return text + fmt::format("\nOne of the runs:\n\n```\n{}\n```\n", study.command);
 }
 
