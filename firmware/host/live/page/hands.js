@@ -9,6 +9,7 @@ const MOST_THROW = 5; // [m/s]
 const MOST_SPIN = 20; // [rad/s]
 const SETTLE_MS = 400; // after the last key, a move by keys ends
 const ANSWER_MS = 300; // by then the run has answered a drag
+const MIDDLE = "XYZ"; // the handle that moves in all directions of the view, by the name that the library gives it
 const STEP_M = 0.01;
 const STEP_RAD = Math.PI / 36;
 
@@ -144,9 +145,25 @@ export class Hands {
       else this.#letGo(this.#after === "throw");
     });
     this.gizmo.addEventListener("objectChange", () => this.#drag());
+    this.#preferMiddle();
     // When the hand moved, not when a slow page came to know it.
     for (const kind of ["pointerdown", "pointermove", "pointerup"])
       addEventListener(kind, (event) => (this.#moved = event.timeStamp / 1000), true);
+  }
+
+  // Who takes the target itself moves it across the view, also where an arrow points at the viewer and lies before it: on
+  // such an arrow a pixel would be a long way.
+  #preferMiddle() {
+    const { gizmo } = this;
+    const ray = new THREE.Raycaster();
+    const hover = gizmo.pointerHover;
+    gizmo.pointerHover = (pointer) => {
+      hover.call(gizmo, pointer);
+      if (!gizmo.axis || gizmo.dragging || gizmo.mode !== "translate") return;
+      ray.setFromCamera(pointer, gizmo.camera);
+      const middle = gizmo.getObjectByName(MIDDLE);
+      if (ray.intersectObject(middle).length) gizmo.axis = MIDDLE;
+    };
   }
 
   #place() {
