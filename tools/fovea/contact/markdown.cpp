@@ -18,6 +18,17 @@ largest force at the hand.
 
 )";
 
+constexpr const char* kChoice = R"(
+A lower threshold detects more pushes, but takes a load for one. At 10 % a load of 1 kg that the hand picks up stops the arm,
+which the default carries:
+
+```
+fovea-sim run ball --set 'faults.load_s=[3, 4]' --set faults.load_mass=1 --set safety.contact_sudden_fraction=0.05
+```
+
+Where nothing is picked up, `safety.contact_sudden_fraction=0.05` is the better choice.
+)";
+
 constexpr const char* kHow = R"(
 The arm is a Panda. In the simulated runs its contact check is off; the recorded external torque is then judged with the
 servo's own code, for every threshold. A run without a push gives false alarms: an alarm ends when the torque has been below
@@ -101,6 +112,7 @@ std::string ToMarkdown(const Study& study) {
           "sudden torque that is {:g} times lower.\n\n",
           study.sudden_weight) +
       ThresholdTable(study);
+  text += kChoice;
   text += "\n## How it is measured\n";
   text += kHow;
   return text + fmt::format("\nOne of the runs:\n\n```\n{}\n```\n", study.command);

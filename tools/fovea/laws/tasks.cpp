@@ -19,7 +19,7 @@ using model::Vec3;
 constexpr double kRad = std::numbers::pi / 180.0;
 
 // The target lies before the arm, above the table, and faces up.
-const Vec3 kPlace_B(0.45, 0.0, 0.02);
+const Vec3 kPlace_B(0.35, 0.0, 0.02);
 const std::array<double, 3> kRpyDeg{180.0, 0.0, 0.0};
 
 // A start: the camera in its goal's frame D.
