@@ -19,8 +19,9 @@ constexpr std::int64_t kEndNs = 150'000'000;
 constexpr int kMostSteps = 20;
 constexpr double kMostDamping = 1e6;
 constexpr double kSameView = 1e-3;  // the camera has hardly moved: less than 1 mm and 1 mrad together
-// A detector's errors are partly the same in all views, and as large as those that it states.
-constexpr double kLeastMisfit = 1.0;
+// A detector states more than the noise of a view: errors that are the same in all views are in it too. So
+// views agree with each other better than stated, but are not believed to be better than this share of it.
+constexpr double kLeastMisfit = 0.6;
 
 // A quantity: what it is called, its standard deviation before any data, and what counts as known.
 struct Quantity {
