@@ -52,6 +52,7 @@ export class Eye {
         if (this.#shown) this.#shown.bitmap.close();
         this.#shown = { entry: next, bitmap };
         this.#paint();
+        this.canvas.dataset.pictures = Number(this.canvas.dataset.pictures || 0) + 1;
       } catch (trouble) {
         this.caption.firstChild.textContent = `A picture could not be read: ${trouble.message}`;
       }
@@ -72,7 +73,6 @@ export class Eye {
     const found = (entry.outlines || []).some(({ role }) => role === "detection");
     const words = `at ${entry.t.toFixed(2)} s${entry.outlines && !found ? ", target not found" : ""}`;
     this.caption.firstChild.textContent = words;
-    canvas.dataset.pictures = Number(canvas.dataset.pictures || 0) + 1;
   }
 }
 
