@@ -103,16 +103,24 @@ TEST_F(SavedScenarioTest, SurvivesQuotesInItsName) {
 TEST_F(SavedScenarioTest, EachShippedScenarioComesBack) {
   for (const std::string& name : ShippedScenarios()) {
     const Scenario scenario = LoadScenario(name, {});
+    const RunDescription about = DescribeRun(scenario);
+    const Eigen::VectorXd readings = Eigen::Map<const Eigen::VectorXd>(
+        scenario.arm.q_start.data(), static_cast<Eigen::Index>(scenario.arm.q_start.size()));
     PresentState present{SomeTruth(), false, {}, scenario.faults};
     present.truth.stamp_ns = 0;
-    present.truth.q = Eigen::Map<const Eigen::VectorXd>(
-        scenario.arm.q_start.data(), static_cast<Eigen::Index>(scenario.arm.q_start.size()));
-    present.truth.dq = Eigen::VectorXd::Zero(present.truth.q.size());
-    Scenario again = Reloaded(SaveScenario(DescribeRun(scenario), present));
+    present.truth.dq = Eigen::VectorXd::Zero(readings.size());
+    const Eigen::VectorXd& zero = about.robot_truth.encoder_zero;
+    present.truth.q = zero.size() > 0 ? Eigen::VectorXd(readings - zero) : readings;
+    Scenario again = Reloaded(SaveScenario(about, present));
+    ASSERT_EQ(again.arm.q_start.size(), scenario.arm.q_start.size()) << name;
+    for (std::size_t i = 0; i < again.arm.q_start.size(); ++i) {
+      EXPECT_NEAR(again.arm.q_start[i], scenario.arm.q_start[i], 1e-15) << name;
+    }
     Scenario before = scenario;
     std::map<std::string, std::string> values = ScenarioKeys(again).Values();
     std::map<std::string, std::string> wanted = ScenarioKeys(before).Values();
-    for (const char* changed : {"run.description", "target.position", "target.rpy_deg", "arm.dq_start"}) {
+    for (const char* changed :
+         {"run.description", "target.position", "target.rpy_deg", "arm.q_start", "arm.dq_start"}) {
       values.erase(changed);
       wanted.erase(changed);
     }
