@@ -5,6 +5,7 @@ import fs from "node:fs";
 import path from "node:path";
 
 import { sideways } from "./browser.mjs";
+import { drag, letGoInMotion, targetAt } from "./live_mouse.mjs";
 
 const pictures = (page, part) =>
   page.evaluate((id) => Number(document.querySelector(`#${id} canvas`)?.dataset.pictures || 0), part);
@@ -225,24 +226,6 @@ export async function checkSave(page, sent, folder) {
   assert.match(await page.locator("a.button").getAttribute("href"), /^report\?token=.+/);
 }
 
-// Where the target is in the window.
-export const targetAt = (page) =>
-  page.evaluate(() => {
-    const box = document.querySelector("#bench canvas").getBoundingClientRect();
-    const { x, y } = JSON.parse(document.querySelector("#bench canvas").dataset.target);
-    return { x: box.left + x * box.width, y: box.top + y * box.height };
-  });
-
-export async function drag(page, from, to) {
-  await page.mouse.move(from.x, from.y);
-  await page.waitForTimeout(150);
-  await page.mouse.down();
-  for (let i = 1; i <= 8; i++) {
-    await page.mouse.move(from.x + ((to.x - from.x) * i) / 8, from.y + ((to.y - from.y) * i) / 8);
-    await page.waitForTimeout(60);
-  }
-}
-
 export async function checkTarget(page, sent) {
   await page.locator("#bench canvas").scrollIntoViewIfNeeded();
   await page.evaluate(() => window.scrollTo(0, 0));
@@ -265,8 +248,7 @@ export async function checkTarget(page, sent) {
   from = sent.length;
   const again = await targetAt(page);
   await drag(page, again, { x: again.x + 120, y: again.y - 40 });
-  // Let go in motion: the answer to the last move is not awaited, which a slow page may give after the hand would be still.
-  await Promise.all([page.mouse.move(again.x + 140, again.y - 47), page.mouse.up()]);
+  await letGoInMotion(page, again.x + 140, again.y - 47);
   const thrown = await waitForSent(page, sent, from, /"v_BO"/);
   assert.ok(Math.hypot(...thrown.v_BO) > 0.01 && Math.hypot(...thrown.v_BO) <= 5.001, JSON.stringify(thrown));
   assert.ok(!texts(sent.slice(from)).includes("{}"), "a throw is no release");

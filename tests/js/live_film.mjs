@@ -9,7 +9,8 @@ import path from "node:path";
 import { createInterface } from "node:readline";
 
 import { withBrowser } from "./browser.mjs";
-import { targetAt, waitForPictures } from "./live_checks.mjs";
+import { waitForPictures } from "./live_checks.mjs";
+import { targetAt } from "./live_mouse.mjs";
 
 const [sim, folder] = process.argv.slice(2);
 fs.rmSync(folder, { recursive: true, force: true });

@@ -12,7 +12,8 @@ import { createInterface } from "node:readline";
 import { protobufFromBinaryDescriptor } from "@mcap/support";
 
 import { listenTo, withBrowser } from "./browser.mjs";
-import { drag, targetAt, texts, waitForPictures, waitForText } from "./live_checks.mjs";
+import { texts, waitForPictures, waitForText } from "./live_checks.mjs";
+import { targetAt } from "./live_mouse.mjs";
 import { readLog } from "./read_mcap.mjs";
 
 const [sim, folder] = process.argv.slice(2);
