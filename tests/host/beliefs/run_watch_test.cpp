@@ -5,11 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
+#include "firmware/host/beliefs/eye_estimate.hpp"
 #include "firmware/host/beliefs/findings_json.hpp"
 #include "tests/host/beliefs/synthetic_run.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 
 // `late_s`: what the servo itself estimates, with 2 ms of standard deviation; none: it knows no target.
 Findings Watch(const test::SyntheticTruth& truth, const model::Pose& X_BO_change_per_s,
-               std::optional<double> late_s = std::nullopt) {
+               std::optional<double> late_s = std::nullopt, EyeEstimate* eye = nullptr) {
   const config::ServoConfig config = test::PandaConfig();
   model::Load load;
   RunWatch watch(config, {40.0, load});
@@ -34,6 +35,9 @@ Findings Watch(const test::SyntheticTruth& truth, const model::Pose& X_BO_change
                   moved.stamp_late_sigma_s = 0.002;
                   watch.Add(moved);
                 });
+  if (eye != nullptr) {
+    *eye = watch.Eye();
+  }
   return watch.Finish();
 }
 
@@ -54,11 +58,26 @@ TEST(RunWatchTest, SaysWhatIsWrongAndWhatToSet) {
 // The synthetic detector is better than a real one: its sigmas would be smaller than errors of one that
 // repeat.
 TEST(RunWatchTest, SaysNothingOfARightBelief) {
-  const Findings findings = Watch({}, {});
+  EyeEstimate eye;
+  const Findings findings = Watch({}, {}, std::nullopt, &eye);
   EXPECT_TRUE(findings.verdict.empty());
   EXPECT_EQ(findings.beliefs.at(0).name, "latency");
   EXPECT_GT(findings.beliefs[0].sigma, 0.02);
   EXPECT_LT(findings.beliefs[0].sigma, 0.05);
+  // Beyond what the views themselves tell.
+  for (const auto& [begin, shared] :
+       {std::pair{"latency", 0.006}, std::pair{"mount shift", 0.0002}, std::pair{"mount turn", 0.0175},
+        std::pair{"focal length", 0.034}, std::pair{"target size", 0.02}}) {
+    int found = 0;
+    for (std::size_t i = 0; i < eye.beliefs.size(); ++i) {
+      ASSERT_EQ(findings.beliefs.at(i).name, eye.beliefs[i].name);
+      if (eye.beliefs[i].name.starts_with(begin)) {
+        ++found;
+        EXPECT_DOUBLE_EQ(findings.beliefs[i].sigma, std::hypot(eye.beliefs[i].sigma, shared)) << begin;
+      }
+    }
+    EXPECT_GT(found, 0) << begin;
+  }
 }
 
 // The eye knows nothing then, although the numbers would be precise.

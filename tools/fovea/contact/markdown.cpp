@@ -26,7 +26,8 @@ which the default carries:
 fovea-sim run ball --set 'faults.load_s=[3, 4]' --set faults.load_mass=1 --set safety.contact_sudden_fraction=0.05
 ```
 
-Where nothing is picked up, `safety.contact_sudden_fraction=0.05` is the better choice.
+Where nothing is picked up, a lower `safety.contact_sudden_fraction` is worth a try. Alone, without a lower limit of the total
+torque, it was not measured.
 )";
 
 constexpr const char* kHow = R"(
