@@ -90,6 +90,12 @@ void ResolveMotion(const config::ServoConfig& config, const MotionTask& task, co
   barriers::MotionLimits limits;
   double wish = 1.0;
   Gather(config, scene, motion.watch, limits, wish);
+  if (scene.by_joints && limits.KeptBy(task.v)) {  // nothing to resolve: the task is the joints' own motion
+    motion.dq = task.v;
+    motion.finite = true;
+    motion.limits = 0;
+    return;
+  }
   ConstrainedConfig constrained;
   constrained.damping.threshold = config.law.damping;
   if (scene.by_joints) {

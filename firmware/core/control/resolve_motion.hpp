@@ -26,7 +26,8 @@ struct MotionScene {
   const model::LinearJacobian& J_E_B;  // of the origin of E, in axes of B
   const model::Mat6N& J;               // body Jacobian of a frame of the hand, for the singularity
   const barriers::ViewedTarget* target = nullptr;  // to keep in view and in sight; null: none
-  bool by_joints = false;                          // a joint motion: the hand's singularities do not limit it
+  // The task is the joints' own motion (J = I, dq_0 = 0, weight 1). The hand's singularities do not limit it.
+  bool by_joints = false;
 };
 
 struct ResolvedMotion {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "firmware/core/barriers/disc_tilt_barrier.hpp"
 #include "tests/support/panda.hpp"
@@ -72,6 +74,37 @@ TEST_F(ResolveMotionTest, JointMotionResetsTheSingularityEstimate) {
   motion_.watch.sigma = 5.0;  // far from singular, as the arm was before
   Resolve(true);
   EXPECT_NE(Resolve(false), 0U);
+}
+
+// A joint motion that keeps all limits is passed on bit by bit; one that does not is changed.
+TEST_F(ResolveMotionTest, JointMotionWithinTheLimitsIsPassedOnAsItIs) {
+  std::mt19937_64 engine(20261128);
+  std::uniform_real_distribution<double> speed(-0.6, 0.6);
+  int kept = 0;
+  int limited = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      task_.v[i] = speed(engine) * (trial % 2 == 0 ? 1.0 : 8.0);
+    }
+    Resolve(true);
+    ASSERT_TRUE(motion_.finite);
+    if (motion_.limits == 0) {
+      ASSERT_EQ(motion_.dq, VecN(task_.v));
+      ++kept;
+    } else {
+      ASSERT_GT((motion_.dq - VecN(task_.v)).norm(), 1e-9);
+      ++limited;
+    }
+  }
+  EXPECT_GT(kept, 200);
+  EXPECT_GT(limited, 200);
+}
+
+TEST_F(ResolveMotionTest, JointMotionThatIsNotFiniteIsSaid) {
+  task_.v[3] = std::numeric_limits<double>::quiet_NaN();
+  Resolve(true);
+  EXPECT_FALSE(motion_.finite);
+  EXPECT_TRUE(motion_.dq.allFinite());
 }
 
 // With all limits in force at once no row is dropped: planes and boxes far away change nothing.
