@@ -26,6 +26,20 @@ constexpr double kBiasShare = 0.002;         // of a joint's largest torque
 constexpr double kNoiseShare = 1e-4;         // of a joint's largest torque: least error of a window's mean
 constexpr double kFrictionSigmaShare = 1.0;  // of a joint's largest torque, per rad/s for viscous friction
 
+constexpr int kFewestPasses = 3;  // for the errors of the windows
+constexpr int kMostPasses = 12;
+constexpr double kSurer = 1.02;  // a size that grows by less is the last one
+
+// How large the arm's own errors are, as a multiple of `stated` (1 or more): their squares, over the number of
+// them that the windows determine. `prior`: with what the covariance was computed. (MacKay, Bayesian
+// interpolation, 1992.)
+double SizeOf(const Eigen::VectorXd& x, const Eigen::VectorXd& variance, const Eigen::VectorXd& prior,
+              const Eigen::VectorXd& stated) {
+  const double determined = (1.0 - variance.array() / prior.array().square()).sum();
+  const double squares = (x.array() / stated.array()).square().sum();
+  return std::sqrt(std::max(squares / std::max(determined, 1.0), 1.0));
+}
+
 model::VecN Hold(const model::ArmDynamics& d) { return d.Cdq + d.g; }
 
 // Mean torque of a motion between two samples that are `seconds` apart: M ddq + C dq + g.
@@ -180,9 +194,12 @@ void ArmEstimator::EstimateLoad(ArmEstimate& estimate) const {
     sigma[i] = kBiasShare * tau_max;
     least[i] = kNoiseShare * tau_max;
   }
+  const Eigen::Index own = unknowns + n - kLoads;  // link masses and torque biases
+  const Eigen::VectorXd stated = prior.tail(own);
+  double size = 1.0;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(unknowns + n);
   Solution solution;
-  for (int pass = 0; pass < 3; ++pass) {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
     std::vector<Equations> blocks;
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(n);
     for (const Window& window : windows_) {
@@ -202,6 +219,16 @@ void ArmEstimator::EstimateLoad(ArmEstimate& estimate) const {
     }
     solution = Solve(blocks, x, prior, 1.0);
     x += solution.change;
+    if (pass + 1 < kFewestPasses) {
+      continue;
+    }
+    const double now =
+        SizeOf(x.tail(own), solution.covariance.diagonal().tail(own), prior.tail(own), stated);
+    if (now < kSurer * size) {
+      break;
+    }
+    size = now;
+    prior.tail(own) = size * stated;
   }
   const Marginal mass = WithoutPrior(x[0], solution.covariance(0, 0), prior[0]);
   estimate.beliefs.push_back({"load", "arm.load_mass", "kg", mass.value, mass.sigma, 0.1, 0.02});

@@ -42,7 +42,11 @@ struct Correction {
 struct Findings {
   int views = 0;        // of the target; 0: too few for an estimate
   double misfit = 0.0;  // of the views, in their stated standard deviations
-  int windows = 0;      // of torques, 100 ms each; 0: too few
+  // A model with which the views disagree by more is wrong in something that it does not estimate, such as a
+  // principal point or a jitter of the stamps; its values are then wrong by more than they state.
+  static constexpr double kMostMisfit = 3.0;
+  [[nodiscard]] bool DoViewsFit() const { return views == 0 || misfit <= kMostMisfit; }
+  int windows = 0;  // of torques, 100 ms each; 0: too few
   std::vector<Belief> beliefs;
   // At most three sentences, each about a belief that is wrong for certain and matters, the surest first:
   // "latency is 58 +- 2 ms, configured 40: set camera.latency_ms = 58".

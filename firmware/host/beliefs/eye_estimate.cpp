@@ -220,8 +220,7 @@ EyeEstimate EyeEstimator::Estimate() const {
       break;
     }
   }
-  const bool fits = estimate.views > 0 && estimate.misfit <= EyeEstimate::kMostMisfit;
-  estimate.beliefs = BeliefsOf(layout, x, solution, prior_sigma, fits);
+  estimate.beliefs = BeliefsOf(layout, x, solution, prior_sigma, estimate.Fits());
   return estimate;
 }
 

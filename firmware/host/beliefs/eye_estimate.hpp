@@ -15,13 +15,10 @@
 namespace fovea::beliefs {
 
 struct EyeEstimate {
-  static constexpr double kMostMisfit = 20.0;
-
-  int views = 0;  // used; 0: too few for an estimate
-  // Of the views, in their stated standard deviations. If it is above kMostMisfit, they do not fit a still
-  // target, and nothing is known.
-  double misfit = 0.0;
-  [[nodiscard]] bool TargetMoved() const { return views > 0 && misfit > kMostMisfit; }
+  int views = 0;        // used; 0: too few for an estimate
+  double misfit = 0.0;  // of the views, in their stated standard deviations
+  // The views are those of a still target, seen by a camera of this model. If not, nothing is known.
+  [[nodiscard]] bool Fits() const { return views > 0 && misfit <= Findings::kMostMisfit; }
   EyeState state;
   std::vector<Belief> beliefs;
 };

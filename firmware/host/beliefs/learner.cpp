@@ -39,6 +39,9 @@ Learner::Learner(const config::ServoConfig& config, const Learns& learns) {
 
 std::vector<config::Tuning> Learner::Decide(const Findings& findings) {
   std::vector<config::Tuning> requests;
+  if (!may_learn_) {
+    return requests;
+  }
   for (Quantity& quantity : quantities_) {
     const auto belief = std::find_if(findings.beliefs.begin(), findings.beliefs.end(),
                                      [&](const Belief& b) { return b.name == quantity.belief; });
@@ -57,6 +60,8 @@ std::vector<config::Tuning> Learner::Decide(const Findings& findings) {
 }
 
 void Learner::Note(const hal::TickRecord& record) {
+  const bool doubts = record.mode == hal::Mode::kHold && record.hold_reason == hal::HoldReason::kEyeDoubted;
+  may_learn_ = record.mode != hal::Mode::kFault && !doubts && !record.command.engage_brakes;
   const hal::TuningNote& note = record.tuning;
   if (note.result != hal::TuningResult::kTaken) {
     return;

@@ -11,7 +11,8 @@
 // A finding counts if it is known, and differs from what is in force by more than three standard deviations
 // and by enough to matter. The step d is then shortened to d (1 - (3 sigma / d)^2), the positive part of
 // James and Stein (Estimation with quadratic loss, 1961): a finding that barely counts hardly moves the key,
-// so that the key does not follow the noise, and a sure one moves it at once.
+// so that the key does not follow the noise, and a sure one moves it at once. Nothing is asked while the
+// servo has a fault, doubts its eye or keeps the brakes closed.
 #pragma once
 
 #include <vector>
@@ -56,6 +57,7 @@ class Learner {
   };
 
   std::vector<Quantity> quantities_;
+  bool may_learn_ = true;  // as the last record says
   std::vector<Correction> corrections_;
 };
 

@@ -25,11 +25,12 @@ struct SharedError {
   const char* names_begin;
   double sigma;  // in the belief's unit
 };
-constexpr std::array<SharedError, 5> kSharedErrors{{{"latency", 0.006},
+constexpr std::array<SharedError, 6> kSharedErrors{{{"latency", 0.006},
                                                     {"mount shift", 0.0002},
                                                     {"mount turn", 0.0175},
                                                     {"focal length", 0.034},
-                                                    {"target size", 0.02}}};
+                                                    {"target size", 0.02},
+                                                    {"encoder zero", 0.045}}};
 
 void AddSharedErrors(std::vector<Belief>& beliefs) {
   for (Belief& belief : beliefs) {
@@ -45,7 +46,7 @@ void AddSharedErrors(std::vector<Belief>& beliefs) {
 // estimate. At the end of what the servo believes, it is only just known, for the true value may lie beyond.
 void TakeLatency(const ServoEstimator& servo, std::vector<Belief>& beliefs) {
   for (Belief& belief : beliefs) {
-    if (belief.key == "camera.latency_ms" && servo.has_seen()) {
+    if (belief.key == "camera.latency_ms") {
       belief.difference = 1e3 * servo.late().mean_s;
       belief.sigma = std::max(1e3 * servo.late().sigma_s, servo.is_bound() ? belief.sigma_max : 0.0);
     }
@@ -126,7 +127,10 @@ Findings RunWatch::Finish() const {
   const ArmEstimate arm = parts_->arm.Estimate();
   Findings findings{eye.views, eye.misfit, arm.windows, eye.beliefs, {}, {}};
   AddSharedErrors(findings.beliefs);
-  if (eye.views == 0 || eye.TargetMoved()) {
+  // Views of a target that did not move, and that still do not fit, have errors that the servo's filter does
+  // not know of either.
+  const bool may_ask_servo = eye.views == 0 || (!eye.Fits() && parts_->servo.TargetMoved());
+  if (may_ask_servo && parts_->servo.HasSettled()) {
     TakeLatency(parts_->servo, findings.beliefs);
   }
   findings.beliefs.insert(findings.beliefs.end(), arm.beliefs.begin(), arm.beliefs.end());

@@ -1,20 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/beliefs/servo_estimate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fovea::beliefs {
+namespace {
+
+constexpr double kAtTheEnd = 0.999;
+constexpr std::int64_t kWatchedNs = 1'000'000'000;
+constexpr std::int64_t kBetweenNs = 20'000'000;  // two samples
+constexpr double kMovedM = 0.05;
+
+}  // namespace
+
+void ServoEstimator::Forget() {
+  recent_.clear();
+  has_settled_ = false;
+  has_place_ = false;
+}
 
 void ServoEstimator::Add(const hal::TickRecord& record) {
-  constexpr double kAtTheEnd = 0.999;
   if (record.tuning.result == hal::TuningResult::kTaken && record.tuning.key == config::kStampOffsetKey) {
     offset_ = record.tuning.asked;
   }
-  if (record.target_known) {
-    has_seen_ = true;
-    late_ = {record.stamp_late_s, record.stamp_late_sigma_s};
-    is_bound_ = std::fabs(late_.mean_s - offset_) >= kAtTheEnd * most_;
+  if (record.mode == hal::Mode::kHold && record.hold_reason == hal::HoldReason::kEyeDoubted) {
+    Forget();
+    return;
   }
+  if (!record.target_known) {
+    recent_.clear();
+    return;
+  }
+  const std::int64_t now_ns = record.stamp_ns;
+  if (recent_.empty()) {
+    known_since_ns_ = now_ns;
+  }
+  if (recent_.empty() || now_ns - recent_.back().stamp_ns >= kBetweenNs) {
+    recent_.push_back({now_ns, record.stamp_late_s});
+  }
+  while (now_ns - recent_.front().stamp_ns > kWatchedNs) {
+    recent_.pop_front();
+  }
+  if (now_ns - known_since_ns_ < kWatchedNs) {
+    return;
+  }
+  const auto [least, most] = std::minmax_element(
+      recent_.begin(), recent_.end(), [](const Sample& a, const Sample& b) { return a.mean_s < b.mean_s; });
+  late_ = {record.stamp_late_s, std::max(record.stamp_late_sigma_s, 0.5 * (most->mean_s - least->mean_s))};
+  is_bound_ = std::fabs(late_.mean_s - offset_) >= kAtTheEnd * most_;
+  has_settled_ = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    least_[i] = has_place_ ? std::min(least_[i], record.p_BO[i]) : record.p_BO[i];
+    most_far_[i] = has_place_ ? std::max(most_far_[i], record.p_BO[i]) : record.p_BO[i];
+  }
+  has_place_ = true;
+}
+
+bool ServoEstimator::TargetMoved() const {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    squares += (most_far_[i] - least_[i]) * (most_far_[i] - least_[i]);
+  }
+  return has_place_ && squares > kMovedM * kMovedM;
 }
 
 }  // namespace fovea::beliefs

@@ -44,9 +44,6 @@ Value ToValue(const toml::node& node, const std::string& what) {
   if (const auto array = node.as_array()) {
     return ToNumbers(*array, what);
   }
-  if (node.is_table()) {
-    throw InputError(what + ": a table is not allowed here");
-  }
   throw InputError(what + ": dates and times are not allowed here");
 }
 
@@ -55,11 +52,15 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
   for (const auto& [name, node] : table) {
     const std::string key =
         prefix.empty() ? std::string(name.str()) : fmt::format("{}.{}", prefix, name.str());
+    const std::string where = fmt::format("{}:{}", file, node.source().begin.line);
     if (const toml::table* inner = node.as_table()) {
+      if (inner->empty() && !prefix.empty()) {  // a section without keys is no mistake
+        throw InputError(
+            fmt::format("{}: {} is an empty table; at least one key in it is needed", where, key));
+      }
       Flatten(*inner, key, file, settings);
       continue;
     }
-    const std::string where = fmt::format("{}:{}", file, node.source().begin.line);
     settings.push_back({key, ToValue(node, fmt::format("{}: {}", where, key)), where});
   }
 }
@@ -123,6 +124,12 @@ Setting ParseAssignment(const std::string& text) {
     const toml::table table = toml::parse("value = " + value);
     if (table.size() != 1) {
       throw InputError("--set " + key + ": more than one value");
+    }
+    if (table.get("value")->is_table()) {
+      throw InputError(
+          fmt::format("--set {0}: a table is not allowed here; give each of its keys, as in "
+                      "--set {0}.NAME=VALUE",
+                      key));
     }
     return {key, ToValue(*table.get("value"), "--set " + key), "--set"};
   } catch (const toml::parse_error&) {

@@ -87,6 +87,32 @@ TEST(ArmEstimateTest, FindsLoadAndFriction) {
   EXPECT_LE(sigma_most, 0.05);
 }
 
+// Ten times the errors that are taken for granted: the windows tell so, and the load is less sure.
+TEST(ArmEstimateTest, MassesThatAreFarFromTheirStatementMakeTheLoadLessSure) {
+  constexpr int kRuns = 40;
+  int within = 0;
+  double surest = 1e9;
+  double farthest = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    test::RandomStates random(1000U + static_cast<unsigned>(run));
+    test::SyntheticTruth truth;
+    truth.load.mass = random.Uniform(-0.15, 0.3);
+    truth.load.p_ECom = Camera().p_ECom;
+    truth.link_mass = random.Joints(test::Panda().model, 0.17);
+    truth.bias = random.Joints(test::Panda().model, 0.02);
+    const ArmEstimate estimate = RunOnce(test::LookAround(), truth, static_cast<unsigned>(run));
+    const Belief& load = Find(estimate, "load");
+    const double sigmas = std::fabs(load.difference - truth.load.mass) / load.sigma;
+    within += sigmas <= 2.0 ? 1 : 0;
+    farthest = std::max(farthest, sigmas);
+    surest = std::min(surest, load.sigma);
+  }
+  fmt::print("within 2 sigma in {} of {}, farthest {:.1f} sigma, smallest sigma {:.3f} kg\n", within, kRuns,
+             farthest, surest);
+  EXPECT_GE(within, 0.8 * kRuns);
+  EXPECT_LT(farthest, 5.0);  // the size of the errors is itself estimated, from few of them
+}
+
 TEST(ArmEstimateTest, FrictionOfAJointThatStandsIsUnknown) {
   test::Waves waves = test::LookAround();
   waves.amplitude[2] = 0.0;

@@ -46,6 +46,27 @@ TEST_F(LearnerTest, AsksForWhatIsSurelyWrong) {
   EXPECT_NEAR(requests[1].value, 0.3 * (1.0 - 0.03 * 0.03 / (0.3 * 0.3)), 1e-15);
 }
 
+TEST_F(LearnerTest, AsksForNothingWhileTheServoHasAFaultOrDoubtsItsEye) {
+  const Findings findings = Found(18.0, 0.5, 0.3, 0.01);
+  Learner learner(Config(), {true, true});
+  hal::TickRecord record;
+  const auto asks = [&] {
+    learner.Note(record);
+    return !learner.Decide(findings).empty();
+  };
+  record.mode = hal::Mode::kTrack;
+  EXPECT_TRUE(asks());
+  record.mode = hal::Mode::kFault;
+  EXPECT_FALSE(asks());
+  record.mode = hal::Mode::kHold;
+  record.hold_reason = hal::HoldReason::kEyeDoubted;
+  EXPECT_FALSE(asks());
+  record.hold_reason = hal::HoldReason::kNotAsked;
+  EXPECT_TRUE(asks());
+  record.command.engage_brakes = true;
+  EXPECT_FALSE(asks());
+}
+
 TEST_F(LearnerTest, AsksOnlyForWhatItIsToldTo) {
   const Findings findings = Found(18.0, 0.5, 0.3, 0.01);
   EXPECT_TRUE(Decide(findings, {false, false}).empty());

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "firmware/host/beliefs/eye_estimate.hpp"
@@ -17,9 +19,13 @@
 namespace fovea::beliefs {
 namespace {
 
+using Change = std::function<void(hal::TickRecord&)>;
+
 // `late_s`: what the servo itself estimates, with 2 ms of standard deviation; none: it knows no target.
+// `change`: of each record, at last.
 Findings Watch(const test::SyntheticTruth& truth, const model::Pose& X_BO_change_per_s,
-               std::optional<double> late_s = std::nullopt, EyeEstimate* eye = nullptr) {
+               std::optional<double> late_s = std::nullopt, EyeEstimate* eye = nullptr,
+               const Change& change = {}) {
   const config::ServoConfig config = test::PandaConfig();
   model::Load load;
   RunWatch watch(config, {40.0, load});
@@ -27,12 +33,17 @@ Findings Watch(const test::SyntheticTruth& truth, const model::Pose& X_BO_change
                 [&](const hal::TickRecord& record) {
                   hal::TickRecord moved = record;
                   for (std::size_t i = 0; i < 3; ++i) {
+                    moved.p_BO[i] =
+                        X_BO_change_per_s.p[static_cast<Eigen::Index>(i)] * hal::ToSeconds(record.stamp_ns);
                     moved.feature.s[i] += X_BO_change_per_s.p[static_cast<Eigen::Index>(i)] *
                                           hal::ToSeconds(record.stamp_ns) / config.feature.radius;
                   }
                   moved.target_known = late_s.has_value();
                   moved.stamp_late_s = late_s.value_or(0.0);
                   moved.stamp_late_sigma_s = 0.002;
+                  if (change) {
+                    change(moved);
+                  }
                   watch.Add(moved);
                 });
   if (eye != nullptr) {
@@ -67,7 +78,7 @@ TEST(RunWatchTest, SaysNothingOfARightBelief) {
   // Beyond what the views themselves tell.
   for (const auto& [begin, shared] :
        {std::pair{"latency", 0.006}, std::pair{"mount shift", 0.0002}, std::pair{"mount turn", 0.0175},
-        std::pair{"focal length", 0.034}, std::pair{"target size", 0.02}}) {
+        std::pair{"focal length", 0.034}, std::pair{"target size", 0.02}, std::pair{"encoder zero", 0.045}}) {
     int found = 0;
     for (std::size_t i = 0; i < eye.beliefs.size(); ++i) {
       ASSERT_EQ(findings.beliefs.at(i).name, eye.beliefs[i].name);
@@ -108,6 +119,62 @@ TEST(RunWatchTest, TakesTheServosLatencyOfATargetThatMoves) {
   const Findings still = Watch({}, {}, 0.018);
   EXPECT_LT(std::fabs(LatencyOf(still).difference), 1.0);
   EXPECT_LT(LatencyOf(still).sigma, 0.1);
+}
+
+// A filter whose model is wrong, as with a mount that is turned, wanders by more than it says.
+TEST(RunWatchTest, ALatencyThatStillWandersIsNotKnown) {
+  const model::Pose moves{model::Mat3::Identity(), model::Vec3(0.05, 0.02, 0.0)};
+  const Findings findings = Watch({}, moves, 0.018, nullptr, [](hal::TickRecord& record) {
+    record.stamp_late_s = 0.018 + 0.02 * std::sin(2.0 * hal::ToSeconds(record.stamp_ns));
+  });
+  fmt::print("sigma {:.1f} ms\n", LatencyOf(findings).sigma);
+  EXPECT_GT(LatencyOf(findings).sigma, 5.0);
+  EXPECT_TRUE(findings.verdict.empty());
+}
+
+TEST(RunWatchTest, ATargetKnownForLessThanASecondTellsNoLatency) {
+  const model::Pose moves{model::Mat3::Identity(), model::Vec3(0.05, 0.02, 0.0)};
+  const auto known_for = [&](double seconds) {
+    return LatencyOf(Watch({}, moves, 0.018, nullptr,
+                           [&](hal::TickRecord& record) {
+                             record.target_known = std::fmod(hal::ToSeconds(record.stamp_ns), 1.5) < seconds;
+                           }))
+        .IsKnown();
+  };
+  EXPECT_FALSE(known_for(0.9));
+  EXPECT_TRUE(known_for(1.2));
+}
+
+TEST(RunWatchTest, AnEyeThatTheServoDoubtsTellsNoLatency) {
+  const model::Pose moves{model::Mat3::Identity(), model::Vec3(0.05, 0.02, 0.0)};
+  const auto held_for = [&](hal::HoldReason reason) {
+    return LatencyOf(Watch({}, moves, 0.018, nullptr,
+                           [&](hal::TickRecord& record) {
+                             if (hal::ToSeconds(record.stamp_ns) > 6.5) {
+                               record.mode = hal::Mode::kHold;
+                               record.hold_reason = reason;
+                             }
+                           }))
+        .IsKnown();
+  };
+  EXPECT_TRUE(held_for(hal::HoldReason::kTargetLost));
+  EXPECT_FALSE(held_for(hal::HoldReason::kEyeDoubted));
+}
+
+// Stamps that jitter make views of a still target disagree. The servo's filter does not know of it either.
+TEST(RunWatchTest, ViewsOfAStillTargetThatDoNotFitTellNothing) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> jitter(0.0, 0.05);
+  const Findings findings = Watch({}, {}, 0.018, nullptr, [&](hal::TickRecord& record) {
+    record.feature.s[0] += jitter(engine);
+    record.feature.s[1] += jitter(engine);
+  });
+  fmt::print("{} views, misfit {:.1f}\n", findings.views, findings.misfit);
+  EXPECT_GT(findings.views, 20);
+  EXPECT_GT(findings.misfit, Findings::kMostMisfit);
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_FALSE(findings.beliefs.at(i).IsKnown()) << findings.beliefs[i].name;
+  }
 }
 
 TEST(FindingsJsonTest, UnknownNumbersAreNull) {

@@ -245,6 +245,9 @@ int HandEye(const CalibrateArguments& a) {
 
 int FromLog(const CalibrateArguments& a) {
   const LogCalibration r = CalibrateFromLog(a.log);
+  if (!r.why_incomplete.empty()) {
+    fmt::print(stderr, "fovea: {}; the calibration is from the readable part\n", r.why_incomplete);
+  }
   if (!r.values.empty()) {
     Write(a, r.values);
   } else if (!a.write.empty()) {
@@ -264,7 +267,9 @@ int FromLog(const CalibrateArguments& a) {
     fmt::print("# {}\n", sigma);
   }
   for (const std::string& unknown : r.unknown) {
-    fmt::print("# unknown: {}; this motion cannot tell\n", unknown);
+    fmt::print("# unknown: {}; {}\n", unknown,
+               r.findings.DoViewsFit() ? "this motion cannot tell"
+                                       : "the views do not fit a still target and this model of the camera");
   }
   if (!r.values.empty()) {
     PrintSection(a, r.values);

@@ -133,12 +133,14 @@ LogCalibration CalibrateFromLog(const std::string& log) {
       watch->Add(log::FromMessage(tick, feature));
     }
   };
-  flight::ReadTicks(path, visitor);
+  const log::McapEnd end = flight::ReadTicks(path, visitor);
   if (!watch || !recorded.camera) {
-    throw config::InputError(fmt::format("{}: holds no run with a camera: its {} is missing", path.string(),
-                                         watch ? "/camera/calibration" : "/servo/configuration"));
+    throw config::InputError(fmt::format("{}: holds no run with a camera: its {} is missing{}", path.string(),
+                                         watch ? "/camera/calibration" : "/servo/configuration",
+                                         end.complete ? "" : "; " + end.why));
   }
   LogCalibration result;
+  result.why_incomplete = end.why;
   result.findings = watch->Finish();
   Values values(result);
   values.Add("camera.latency_ms", [&](const Entries& late) -> NewValues {

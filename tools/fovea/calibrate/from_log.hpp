@@ -15,6 +15,7 @@ struct LogCalibration {
   std::vector<config::NewValue> values;  // for section [camera]: the keys that the run tells completely
   std::vector<std::string> sigmas;       // "mount_xyz +- 0.12, 0.20, 0.15 mm"
   std::vector<std::string> unknown;      // "mount_xyz along x, z"
+  std::string why_incomplete;            // what is wrong with the log's end, and where; "": nothing
 };
 
 // `log`: a log.mcap, or the folder of a run. config::InputError: it holds no run with a camera.

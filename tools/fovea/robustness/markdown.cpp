@@ -8,9 +8,9 @@ namespace {
 
 constexpr const char* kHead = R"(# Robustness: results with wrong beliefs
 
-Printed by `fovea atlas --robustness --markdown`: runs from random starts, in which arm and camera are not what the servo
-believes ([the section `[truth]`](scenarios/README.md#what-is-true-and-what-the-servo-believes)). The exit code is 1 when a
-run within the stated ranges exceeds a limit. The image error is that of the true camera's picture.
+Runs from random starts, in which arm and camera are not what the servo believes
+([the section `[truth]`](scenarios/README.md#what-is-true-and-what-the-servo-believes)). The exit code is 1 when a
+run within the stated ranges exceeds a limit. The image error is that of the true camera's picture. Printed by
 
 )";
 
@@ -56,7 +56,10 @@ std::string Together(const std::vector<Tornado>& targets) {
 std::string ToMarkdown(const Spec& spec, const std::vector<Tornado>& targets) {
   std::string text = kHead;
   const atlas::Heading& heading = targets.front().none.heading;
-  text += fmt::format("Seed {}. All together:\n\n{}\n", heading.seed, Together(targets));
+  text += fmt::format(
+      "```\nfovea atlas --robustness --runs {} --alone {} --seed {} --markdown > sim/ROBUSTNESS.md\n```\n\n"
+      "All together:\n\n{}\n",
+      targets.front().none.runs, targets.front().starts, heading.seed, Together(targets));
   text += fmt::format("They are drawn from `{}`:\n\n```\n", spec.name);
   for (const std::string& assignment : Scaled(spec, 1.0)) {
     text += assignment + "\n";
