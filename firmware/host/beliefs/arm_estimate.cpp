@@ -28,10 +28,11 @@ constexpr double kFrictionSigmaShare = 1.0;  // of a joint's largest torque, per
 
 constexpr int kFewestPasses = 3;  // for the errors of the windows
 constexpr int kMostPasses = 12;
-constexpr double kSurer = 1.02;  // a size that grows by less is the last one
+constexpr double kSurprise = 1.5;  // the few errors that windows determine are smaller than this by chance
+constexpr double kSurer = 1.02;    // a size that grows by less is the last one
 
-// How large the arm's own errors are, as a multiple of `stated` (1 or more): their squares, over the number of
-// them that the windows determine. `prior`: with what the covariance was computed. (MacKay, Bayesian
+// How large the arm's own errors are, as a multiple of `stated` (1 or more): their squares, over the number
+// of them that the windows determine. `prior`: with what the covariance was computed. (MacKay, Bayesian
 // interpolation, 1992.)
 double SizeOf(const Eigen::VectorXd& x, const Eigen::VectorXd& variance, const Eigen::VectorXd& prior,
               const Eigen::VectorXd& stated) {
@@ -222,9 +223,8 @@ void ArmEstimator::EstimateLoad(ArmEstimate& estimate) const {
     if (pass + 1 < kFewestPasses) {
       continue;
     }
-    const double now =
-        SizeOf(x.tail(own), solution.covariance.diagonal().tail(own), prior.tail(own), stated);
-    if (now < kSurer * size) {
+    const double now = SizeOf(x.tail(own), solution.covariance.diagonal().tail(own), prior.tail(own), stated);
+    if (now < (size > 1.0 ? kSurer * size : kSurprise)) {
       break;
     }
     size = now;

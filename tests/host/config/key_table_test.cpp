@@ -143,6 +143,10 @@ TEST(TomlFileTest, ErrorsNameFileAndLine) {
   EXPECT_THAT(error("[run]\nday = 2020-01-01\n"), HasSubstr("scenario.toml:2: run.day"));
   EXPECT_THAT(error("a = [1, [2]]\n"), HasSubstr("scenario.toml:1"));
   EXPECT_EQ(error(""), "accepted");
+  EXPECT_EQ(error("[run]\n"), "accepted");
+  EXPECT_THAT(error("[truth]\ncamera.latency_ms = {}\n"),
+              HasSubstr("scenario.toml:2: truth.camera.latency_ms is an empty table"));
+  EXPECT_THAT(error("[truth.camera.latency_ms]\n"), HasSubstr("scenario.toml:1: truth.camera.latency_ms is"));
   EXPECT_THROW(ReadTomlFile(folder.path() / "none.toml"), InputError);
   EXPECT_THROW(ReadTomlFile(folder.path()), InputError);
 
@@ -152,6 +156,17 @@ TEST(TomlFileTest, ErrorsNameFileAndLine) {
   EXPECT_EQ(settings[0].key, "camera.lens.f");
   EXPECT_EQ(settings[1].key, "camera.rate_hz");
   EXPECT_THAT(settings[1].where, HasSubstr("scenario.toml:2"));
+}
+
+TEST(ParseAssignmentTest, ATableIsToBeGivenKeyByKey) {
+  try {
+    static_cast<void>(ParseAssignment("truth.camera.latency_ms={sigma=1}"));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "--set truth.camera.latency_ms: a table is not allowed here; give each of its keys, as in "
+                 "--set truth.camera.latency_ms.NAME=VALUE");
+  }
 }
 
 // The parser would accept such a key, but would recurse as deeply as it is nested.

@@ -218,6 +218,9 @@ TEST_F(FoveaProgramTest, HelpShowsExamples) {
 TEST_F(FoveaProgramTest, CalibrateFromLogNeedsTheServosConfiguration) {
   ExpectRefused(Fovea({"calibrate", "from-log", MakeRun("bare").string()}),
                 "holds no run with a camera: its /servo/configuration is missing");
+  const fs::path cut = MakeRun("cut") / "log.mcap";
+  fs::resize_file(cut, fs::file_size(cut) / 2);
+  ExpectRefused(Fovea({"calibrate", "from-log", cut.string()}), "cut off at byte");
 }
 
 // The table in the repository matches the program; renew it with `fovea guards`.
