@@ -17,7 +17,7 @@ constexpr double kMovedM = 0.05;
 void ServoEstimator::Forget() {
   recent_.clear();
   has_settled_ = false;
-  has_place_ = false;
+  places_.setEmpty();
 }
 
 void ServoEstimator::Add(const hal::TickRecord& record) {
@@ -50,19 +50,9 @@ void ServoEstimator::Add(const hal::TickRecord& record) {
   late_ = {record.stamp_late_s, std::max(record.stamp_late_sigma_s, 0.5 * (most->mean_s - least->mean_s))};
   is_bound_ = std::fabs(late_.mean_s - offset_) >= kAtTheEnd * most_;
   has_settled_ = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    least_[i] = has_place_ ? std::min(least_[i], record.p_BO[i]) : record.p_BO[i];
-    most_far_[i] = has_place_ ? std::max(most_far_[i], record.p_BO[i]) : record.p_BO[i];
-  }
-  has_place_ = true;
+  places_.extend(model::Vec3(record.p_BO[0], record.p_BO[1], record.p_BO[2]));
 }
 
-bool ServoEstimator::TargetMoved() const {
-  double squares = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    squares += (most_far_[i] - least_[i]) * (most_far_[i] - least_[i]);
-  }
-  return has_place_ && squares > kMovedM * kMovedM;
-}
+bool ServoEstimator::TargetMoved() const { return !places_.isEmpty() && places_.diagonal().norm() > kMovedM; }
 
 }  // namespace fovea::beliefs

@@ -9,7 +9,7 @@
 // was seen by an eye that the servo came to doubt does not count.
 #pragma once
 
-#include <array>
+#include <Eigen/Geometry>
 #include <deque>
 
 #include "firmware/core/config/servo_config.hpp"
@@ -50,9 +50,7 @@ class ServoEstimator {
   estimate::StampError late_;
   std::deque<Sample> recent_;  // since the target is known, not older than what is watched
   std::int64_t known_since_ns_ = 0;
-  std::array<double, 3> least_{};  // coordinates of the target in B [m]
-  std::array<double, 3> most_far_{};
-  bool has_place_ = false;
+  Eigen::AlignedBox3d places_;  // of the target in B [m]
 };
 
 }  // namespace fovea::beliefs
