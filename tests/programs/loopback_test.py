@@ -71,7 +71,8 @@ class Loopback(TwoPrograms):
             self.assertEqual(s["fault"], "none")
             for reader in (["read_log.mjs", str(out), "hardware"],
                            ["open_report.mjs", str(out / "report.html"), str(out), "hardware"]):
-                done = subprocess.run(["node", READERS / reader[0], *reader[1:]], timeout=120, capture_output=True,
+                # As long as the other tests of a report: a software renderer draws the arm, beside other tests.
+                done = subprocess.run(["node", READERS / reader[0], *reader[1:]], timeout=300, capture_output=True,
                                       text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
