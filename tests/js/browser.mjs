@@ -26,6 +26,7 @@ export async function withBrowser(look) {
       "--use-gl=angle",
       "--use-angle=swiftshader",
       "--enable-unsafe-swiftshader",
+      "--disable-gpu-compositing", // the software renderer draws the 3-D views only: the page is drawn twice as fast
     ],
   });
   // A software renderer draws the page, on a machine that is busy with other tests.
