@@ -40,20 +40,36 @@ Eigen::Vector2d Distort(const Lens& l, const Eigen::Vector2d& xy) {
           y * radial + l.p1 * (r2 + 2.0 * y * y) + 2.0 * l.p2 * x * y};
 }
 
+namespace {
+
+// Moves `point` to where the lens draws `goal`, by Newton's method, until the rest is at most `enough` or no
+// round changes it. False if there is no such point nearby.
+bool Approach(const Lens& lens, const Eigen::Vector2d& goal, double enough, Eigen::Vector2d& point) {
+  constexpr int kRounds = 12;
+  Eigen::Vector2d rest = goal - Distort(lens, point);
+  for (int round = 0; round < kRounds && rest.norm() > enough; ++round) {
+    const Eigen::Matrix2d slope = Slope(lens, point);
+    if (!(slope.determinant() > 0.0) || !(slope.trace() > 0.0)) {
+      return false;
+    }
+    const Eigen::Vector2d before = point;
+    point += slope.inverse() * rest;
+    if (point == before) {
+      break;
+    }
+    rest = goal - Distort(lens, point);
+  }
+  return rest.norm() < std::max(enough, 1e-9);
+}
+
+}  // namespace
+
 bool Undistort(const Lens& lens, const Eigen::Vector2d& xy, Eigen::Vector2d& ideal) {
-  constexpr int kSteps = 8;    // from the centre outwards, so that the search cannot jump over a fold
-  constexpr int kRounds = 12;  // Newton iterations per step
+  constexpr int kSteps = 8;           // from the centre outwards, so that the search cannot jump over a fold
+  constexpr double kOnTheWay = 1e-6;  // a step starts the next one; only the last must be exact
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   for (int step = 1; step <= kSteps; ++step) {
-    const Eigen::Vector2d goal = xy * step / kSteps;
-    for (int round = 0; round < kRounds; ++round) {
-      const Eigen::Matrix2d slope = Slope(lens, point);
-      if (!(slope.determinant() > 0.0) || !(slope.trace() > 0.0)) {
-        return false;
-      }
-      point += slope.inverse() * (goal - Distort(lens, point));
-    }
-    if (!((goal - Distort(lens, point)).norm() < 1e-9)) {
+    if (!Approach(lens, xy * step / kSteps, step < kSteps ? kOnTheWay : 0.0, point)) {
       return false;
     }
   }
@@ -74,7 +90,10 @@ LensMap::LensMap(const Lens& lens, const Pinhole& pinhole)
     const double u = static_cast<double>(column) + (i % 2 == 0 ? -0.25 : 0.25);
     const double v = static_cast<double>(row) + (i % kPoints < 2 ? -0.25 : 0.25);
     const Eigen::Vector2d xy((u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.FocalV());
-    if (!Undistort(lens, xy, ideal[i])) {
+    const bool first = i % (width * kPoints) == 0;
+    ideal[i] =
+        first ? Eigen::Vector2d::Zero() : ideal[i - 1];  // along a row, the next point is near the last one
+    if (!(first ? Undistort(lens, xy, ideal[i]) : Approach(lens, xy, 0.0, ideal[i]))) {
       throw std::invalid_argument("the lens folds the picture before its edge");
     }
     reach = reach.cwiseMax(ideal[i].cwiseAbs());

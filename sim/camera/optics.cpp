@@ -29,12 +29,12 @@ std::optional<SensorRows> RowsOf(const Shutter& shutter, const Pinhole& pinhole,
 }  // namespace
 
 Optics::Optics(const RenderScene& scene, const Pinhole& pinhole, const Lens& lens, Sampling sampling,
-               int index, const Shutter& shutter)
+               int index, const Shutter& shutter, Optics* twin)
     : shutter_(shutter),
       height_px_(pinhole.height_px),
-      lens_(MakeLensMap(lens, pinhole, sampling)),
+      lens_(twin != nullptr ? twin->lens_ : MakeLensMap(lens, pinhole, sampling)),
       renderer_(scene, lens_ ? lens_->wide() : pinhole, RenderQuality{}, index,
-                RowsOf(shutter, pinhole, lens)) {
+                RowsOf(shutter, pinhole, lens), twin != nullptr ? &twin->renderer_ : nullptr) {
   if (lens_) {
     wide_.resize(static_cast<std::size_t>(lens_->wide().width_px) *
                  static_cast<std::size_t>(lens_->wide().height_px) * 4);

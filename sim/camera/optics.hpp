@@ -26,9 +26,10 @@ enum class Sampling : std::uint8_t {
 // One thread at a time may use it, as with SceneRenderer.
 class Optics {
  public:
-  // Throws as SceneRenderer; std::invalid_argument as LensMap.
+  // `index`: as SceneRenderer's, and it throws the same; std::invalid_argument as LensMap. `twin`: of the
+  // same scene, camera and lens, on no other thread; what it has prepared is copied.
   Optics(const RenderScene& scene, const Pinhole& pinhole, const Lens& lens, Sampling sampling, int index = 0,
-         const Shutter& shutter = {});
+         const Shutter& shutter = {}, Optics* twin = nullptr);
 
   // Draws `exposure` into `rgba` [height * width * 4], top row first. A scene that stands still during the
   // exposure (`around` is null) is drawn once.

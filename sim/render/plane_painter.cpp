@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "sim/render/light.hpp"
@@ -41,6 +42,29 @@ GLuint UploadTexture(const Texture& from) {
   return texture;
 }
 
+// A texture with the pixels of another one, level by level.
+GLuint UploadSurface(const PaintedSurface& from) {
+  const GLuint texture = UploadTexture({from.size_px, from.size_px, {}});
+  int side_px = from.size_px;
+  for (std::size_t level = 0; level < from.levels.size(); ++level, side_px /= 2) {
+    glTexImage2D(GL_TEXTURE_2D, static_cast<GLint>(level), GL_RGBA8, side_px, side_px, 0, GL_RGBA,
+                 GL_UNSIGNED_BYTE, from.levels[level].data());
+  }
+  return texture;
+}
+
+PaintedSurface ReadSurface(GLuint texture) {
+  PaintedSurface surface;
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &surface.size_px);
+  for (int side_px = surface.size_px; side_px > 0; side_px /= 2) {
+    const auto level = static_cast<GLint>(surface.levels.size());
+    surface.levels.emplace_back(static_cast<std::size_t>(side_px) * static_cast<std::size_t>(side_px) * 4);
+    glGetTexImage(GL_TEXTURE_2D, level, GL_RGBA, GL_UNSIGNED_BYTE, surface.levels.back().data());
+  }
+  return surface;
+}
+
 Vector2f LowCorner(const TexturedPlane& plane) { return plane.centre_B.head<2>() - 0.5F * plane.size; }
 
 // Offset and scale that map x, y of B to texture coordinates.
@@ -69,7 +93,7 @@ Rectangle ShadowOn(float z, const MovingBounds& thing) {
 }  // namespace
 
 PlanePainter::PlanePainter(const std::vector<TexturedPlane>& planes, const std::string& shadow_head,
-                           const ShadowMap::DrawAll& draw_static)
+                           const ShadowMap::DrawAll& draw_static, std::span<const PaintedSurface> painted)
     : lit_program_(std::string(kHead) + shaders::kPlaneVertex,
                    std::string(kHead) + shaders::kLitPlaneFragment),
       shaded_program_(shadow_head + shaders::kPlaneVertex,
@@ -82,14 +106,17 @@ PlanePainter::PlanePainter(const std::vector<TexturedPlane>& planes, const std::
   glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(Vector2f), nullptr);
   glVertexAttribDivisor(0, 1);
 
-  ShadowMap shadow(kPaintedShadowMapPx);
-  shadow.DrawStatic(draw_static);
-  shadow.DrawMoving([](const ShadowMap::DrawAt&) {});
+  std::optional<ShadowMap> shadow;
+  if (painted.empty()) {
+    shadow.emplace(kPaintedShadowMapPx);
+    shadow->DrawStatic(draw_static);
+    shadow->DrawMoving([](const ShadowMap::DrawAt&) {});
+  }
   for (const TexturedPlane& shape : planes) {
     Plane plane;
     plane.shape = shape;
     plane.shape.texture.rgba.clear();
-    plane.texture = PaintLight(shape, shadow);
+    plane.texture = shadow ? PaintLight(shape, *shadow) : UploadSurface(painted[planes_.size()]);
     if (shape.size.maxCoeff() < kLargePlane) {
       plane.columns = static_cast<int>(std::ceil(shape.size.x() / kTileSize));
       plane.rows = static_cast<int>(std::ceil(shape.size.y() / kTileSize));
@@ -151,6 +178,14 @@ GLuint PlanePainter::PaintLight(const TexturedPlane& plane, const ShadowMap& sha
   glDeleteFramebuffers(1, &frame);
   glDeleteTextures(1, &colour);
   return painted;
+}
+
+std::vector<PaintedSurface> PlanePainter::Painted() const {
+  std::vector<PaintedSurface> surfaces;
+  for (const Plane& plane : planes_) {
+    surfaces.push_back(ReadSurface(plane.texture));
+  }
+  return surfaces;
 }
 
 void PlanePainter::SortTiles(const Plane& plane, const Ball& target,

@@ -8,7 +8,9 @@
 #include <epoxy/gl.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/render/bench.hpp"
@@ -24,12 +26,19 @@ struct MovingBounds {
   Box box_L;
 };
 
+// The pixels of a painted surface.
+struct PaintedSurface {
+  int size_px = 0;                                // of a side of the first level
+  std::vector<std::vector<std::uint8_t>> levels;  // RGBA; each has half the side of the one before
+};
+
 class PlanePainter {
  public:
-  // Paints the light into the textures of `planes`; `draw_static` draws all static things. `shadow_head` is
-  // the GLSL preamble that sets the quality of the moving shadows.
+  // Paints the light into the textures of `planes`; `draw_static` draws all static things. Or takes the
+  // surfaces that another painter of the same planes and things has `painted`, in the same order.
+  // `shadow_head` is the GLSL preamble that sets the quality of the moving shadows.
   PlanePainter(const std::vector<TexturedPlane>& planes, const std::string& shadow_head,
-               const ShadowMap::DrawAll& draw_static);
+               const ShadowMap::DrawAll& draw_static, std::span<const PaintedSurface> painted);
   ~PlanePainter();
   PlanePainter(const PlanePainter&) = delete;
   PlanePainter& operator=(const PlanePainter&) = delete;
@@ -38,6 +47,9 @@ class PlanePainter {
   // target. The target also darkens the ground under it. Skips planes below `bottom` [m], which are hidden.
   void Draw(const Eigen::Matrix4f& clip_of_B, float gain, const ShadowMap& shadow, const Ball& target,
             const std::vector<MovingBounds>& moving, float bottom) const;
+
+  // The surfaces as they are on the graphics device.
+  [[nodiscard]] std::vector<PaintedSurface> Painted() const;
 
  private:
   struct Plane {

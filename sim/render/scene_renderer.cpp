@@ -72,7 +72,7 @@ struct SceneRenderer::Impl {
   RenderWatch watch;
 
   Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index,
-       const std::optional<SensorRows>& r)
+       const std::optional<SensorRows>& r, std::span<const PaintedSurface> painted)
       : scene(s), pinhole(p), quality(q), sensor(r), egl(index) {
     egl.MakeCurrent();
     const std::string head =
@@ -94,7 +94,7 @@ struct SceneRenderer::Impl {
     canvas = std::make_unique<Canvas>(pinhole.width_px, pinhole.height_px, quality.samples);
     const auto draw_static = [this](const ShadowMap::DrawAt& draw) { DrawStaticCasters(draw); };
     shadow->DrawStatic(draw_static);
-    planes = std::make_unique<PlanePainter>(scene.bench.planes, head, draw_static);
+    planes = std::make_unique<PlanePainter>(scene.bench.planes, head, draw_static, painted);
   }
 
   ~Impl() { egl.MakeCurrent(); }
@@ -362,8 +362,14 @@ struct SceneRenderer::Impl {
 };
 
 SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality,
-                             int index, const std::optional<SensorRows>& rows)
-    : impl_(std::make_unique<Impl>(scene, pinhole, quality, index, rows)) {
+                             int index, const std::optional<SensorRows>& rows, SceneRenderer* twin) {
+  std::vector<PaintedSurface> painted;
+  if (twin != nullptr) {
+    twin->impl_->egl.MakeCurrent();
+    painted = twin->impl_->planes->Painted();
+    twin->Release();
+  }
+  impl_ = std::make_unique<Impl>(scene, pinhole, quality, index, rows, painted);
   driver_name_ = impl_->egl.RendererName();
   Release();
 }

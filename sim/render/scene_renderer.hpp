@@ -46,9 +46,10 @@ using RenderWatch = std::function<void(const char* part)>;
 class SceneRenderer {
  public:
   // `index` numbers the renderers that work at the same time, from 0 (see EglContext). `rows`: for DrawBand.
-  // std::runtime_error (one line): there is no EGL, or the driver cannot draw.
+  // `twin`: a renderer of the same scene that is on no other thread; what it has painted is copied, in place
+  // of being painted again. std::runtime_error (one line): there is no EGL, or the driver cannot draw.
   SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality, int index = 0,
-                const std::optional<SensorRows>& rows = std::nullopt);
+                const std::optional<SensorRows>& rows = std::nullopt, SceneRenderer* twin = nullptr);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;

@@ -172,6 +172,9 @@ Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, 
   const Birch birch(0.5F * static_cast<float>(width_m), 0.5F * static_cast<float>(depth_m));
   const Mat rubber(0.5F * static_cast<float>(mat_width) + texel, 0.5F * static_cast<float>(mat_depth) + texel,
                    texel);
+  const auto mat = [&rubber](float u, float v, float out) {
+    return out > -0.006F ? Colour{0.08F, 0.10F, 0.11F} : rubber.At(u, v);
+  };
   for (int j = 0; j < size_px; ++j) {
     for (int i = 0; i < size_px; ++i) {
       const auto x = static_cast<float>(((i + 0.5) / size_px - 0.5) * width_m);
@@ -181,10 +184,13 @@ Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, 
       // Distance to the mat's outline, negative inside.
       const float out = std::max(std::fabs(u) - 0.5F * static_cast<float>(mat_width),
                                  std::fabs(v) - 0.5F * static_cast<float>(mat_depth));
+      if (out < -texel) {
+        Put(texture, i, j, mat(u, v, out));
+        continue;
+      }
       Colour colour = birch.At(x, y);
       if (out < texel) {
-        const Colour mat = out > -0.006F ? Colour{0.08F, 0.10F, 0.11F} : rubber.At(u, v);
-        colour = Mix(mat, colour, std::clamp(out / texel + 0.5F, 0.0F, 1.0F));
+        colour = Mix(mat(u, v, out), colour, std::clamp(out / texel + 0.5F, 0.0F, 1.0F));
       } else {
         colour = Mix({0.30F, 0.23F, 0.15F}, colour, std::clamp(out / 0.008F, 0.0F, 1.0F));  // its soft shadow
       }

@@ -22,7 +22,8 @@ Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace, int re
   std::vector<Painter> painters;
   for (int i = 0; i < renderers; ++i) {  // one after the other: the first initialises the driver
     optics_.push_back(std::make_unique<Optics>(about.scene, about.eye.pinhole, about.eye.lens,
-                                               Sampling::kPlain, i, shutter));
+                                               Sampling::kPlain, i, shutter,
+                                               optics_.empty() ? nullptr : optics_.front().get()));
     Optics* const optics = optics_.back().get();
     Painter painter;
     painter.draw = [this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {

@@ -19,7 +19,7 @@ constexpr int kScale = 2;          // magnification of the camera's pictures
 constexpr int kPageLegendPx = 84;  // height of the strip below them
 std::string ToPng(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 4})) {
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
     throw std::runtime_error("a picture cannot be encoded as PNG");
   }
   return {bytes.begin(), bytes.end()};

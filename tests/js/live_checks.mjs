@@ -5,7 +5,7 @@ import fs from "node:fs";
 import path from "node:path";
 
 import { sideways } from "./browser.mjs";
-import { drag, letGoInMotion, targetAt } from "./live_mouse.mjs";
+import { drag, handAt, letGoInMotion, targetAt, untilBenchStands } from "./live_mouse.mjs";
 
 const pictures = (page, part) =>
   page.evaluate((id) => Number(document.querySelector(`#${id} canvas`)?.dataset.pictures || 0), part);
@@ -230,6 +230,7 @@ export async function checkTarget(page, sent) {
   await page.locator("#bench canvas").scrollIntoViewIfNeeded();
   await page.evaluate(() => window.scrollTo(0, 0));
   await page.getByRole("button", { name: "Move target" }).click();
+  await untilBenchStands(page);
   await waitForPictures(page, 2);
   let from = sent.length;
   const at = await targetAt(page);
@@ -257,10 +258,10 @@ export async function checkTarget(page, sent) {
 
 export async function checkPull(page, sent) {
   await page.getByRole("button", { name: "Pull arm" }).click();
-  const box = await page.locator("#bench canvas").boundingBox();
-  const { x, y } = await page.evaluate(() => JSON.parse(document.querySelector("#bench canvas").dataset.hand));
-  const hand = { x: box.x + x * box.width, y: box.y + y * box.height };
+  await untilBenchStands(page);
+  await waitForPictures(page, 2);
   let from = sent.length;
+  const hand = await handAt(page);
   await drag(page, hand, { x: hand.x + 60, y: hand.y - 40 });
   const pull = await waitForSent(page, sent, from, /"to_B"/);
   assert.match(pull.link, /^(?!fovea)./, "a link of the robot");

@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a hand with a mouse does on the live page's bench.
 
-// Where the target is in the window.
-export const targetAt = (page) =>
-  page.evaluate(() => {
-    const box = document.querySelector("#bench canvas").getBoundingClientRect();
-    const { x, y } = JSON.parse(document.querySelector("#bench canvas").dataset.target);
+// Where the bench's picture has the target or the hand, in the window.
+const placeOf = (page, what) =>
+  page.evaluate((name) => {
+    const canvas = document.querySelector("#bench canvas");
+    const box = canvas.getBoundingClientRect();
+    const { x, y } = JSON.parse(canvas.dataset[name]);
     return { x: box.left + x * box.width, y: box.top + y * box.height };
-  });
+  }, what);
+export const targetAt = (page) => placeOf(page, "target");
+export const handAt = (page) => placeOf(page, "hand");
+
+// The page scrolls smoothly to what is clicked: waits until the bench stands.
+export async function untilBenchStands(page) {
+  const top = () => page.evaluate(() => document.querySelector("#bench canvas").getBoundingClientRect().top);
+  for (let last = NaN, now = await top(); now !== last; now = await top()) {
+    last = now;
+    await page.waitForTimeout(200);
+  }
+}
 
 export async function drag(page, from, to) {
   await page.mouse.move(from.x, from.y);

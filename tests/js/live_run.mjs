@@ -13,7 +13,7 @@ import { protobufFromBinaryDescriptor } from "@mcap/support";
 
 import { listenTo, withBrowser } from "./browser.mjs";
 import { texts, waitForPictures, waitForText } from "./live_checks.mjs";
-import { targetAt } from "./live_mouse.mjs";
+import { targetAt, untilBenchStands } from "./live_mouse.mjs";
 import { readLog } from "./read_mcap.mjs";
 
 const [sim, folder] = process.argv.slice(2);
@@ -70,15 +70,6 @@ const SHOWN_S = 0.02; // the page shows rounded times
 const runTime = (page) => page.evaluate(() => parseFloat(document.querySelector(".when").textContent));
 const untilTime = (page, t) =>
   page.waitForFunction((end) => parseFloat(document.querySelector(".when").textContent) >= end, t);
-
-// The page scrolls smoothly to what is clicked: waits until the bench stands.
-async function untilBenchStands(page) {
-  const top = () => page.evaluate(() => document.querySelector("#bench canvas").getBoundingClientRect().top);
-  for (let last = NaN, now = await top(); now !== last; now = await top()) {
-    last = now;
-    await page.waitForTimeout(200);
-  }
-}
 
 // Drags the target with the mouse, sideways in the window, until it is `metres` away. Each step of the mouse waits for
 // the page's own answer, so that a slow computer does not let the mouse run ahead.

@@ -39,7 +39,7 @@ TEST_P(McuLoop, RunMatchesTheComputerBitExact) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenarios, McuLoop,
-    testing::Values(McuCase{"Ball", {"ball", "--set", "run.duration_s=4"}, true},
+    testing::Values(McuCase{"Ball", {"ball", "--set", "run.duration_s=2.4"}, true},
                     McuCase{"BallMoving", {"ball-moving", "--set", "run.duration_s=0.6"}, false},
                     McuCase{"Square", {"square", "--set", "run.duration_s=1.5"}, false},
                     McuCase{

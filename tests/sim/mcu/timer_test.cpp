@@ -42,7 +42,7 @@ TEST(BoardByTimer, PerfectLineMatchesTheComputerBitExact) {
 
 TEST(BoardByTimer, ConvergesThroughJitterAndLoss) {
   const nlohmann::json run =
-      OnTheBoard(With({"ball", "--set", "servo.lambda=4", "--set", "run.duration_s=3", "--line-delay-ms",
+      OnTheBoard(With({"ball", "--set", "servo.lambda=4", "--set", "run.duration_s=2.4", "--line-delay-ms",
                        "0.2", "--line-jitter-ms", "0.95", "--line-loss", "0.01", "--line-from-s", "0.1"},
                       kByTimer));
   std::cout << run["verdict"] << ", " << run["final_error_px_rms"] << " px, " << run["final_error_mm"]
