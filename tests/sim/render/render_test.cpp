@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <random>
 
 #include "firmware/vision/detect/target_detector.hpp"
@@ -100,14 +101,26 @@ TEST_F(RenderTest, ObjectInFrontHidesTheBall) {
   EXPECT_FALSE(Detect(Draw(renderer)).found);
 }
 
+// Also one that copies what the first has painted, from views that use different levels of the textures.
 TEST_F(RenderTest, TwoRenderersDrawTheSameBytes) {
   SceneRenderer first(scene_, pinhole_, {}, 0);
-  exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.03, -0.02, 0.3);
-  const cv::Mat a = Draw(first).clone();
-  first.Release();
   SceneRenderer second(scene_, pinhole_, {}, 1);
-  const cv::Mat b = Draw(second);
-  EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0.0);
+  SceneRenderer twin(scene_, pinhole_, {}, 1, std::nullopt, &first);
+  const auto draw = [this](SceneRenderer& renderer) {
+    const cv::Mat picture = Draw(renderer).clone();
+    renderer.Release();
+    return picture;
+  };
+  exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.03, -0.02, 0.3);
+  cv::Mat before;
+  for (const double back : {0.0, 0.6, 1.2}) {
+    exposure_.X_BC.translation() -= back * exposure_.X_BC.linear().col(2);
+    const cv::Mat a = draw(first);
+    EXPECT_EQ(cv::norm(a, draw(second), cv::NORM_INF), 0.0) << back;
+    EXPECT_EQ(cv::norm(a, draw(twin), cv::NORM_INF), 0.0) << back;
+    EXPECT_TRUE(before.empty() || cv::norm(a, before, cv::NORM_INF) > 0.0) << "another view";
+    before = a;
+  }
 }
 
 // Skipping geometry that the table hides gives the same bytes:
