@@ -42,14 +42,17 @@ Eigen::Vector2d Distort(const Lens& l, const Eigen::Vector2d& xy) {
 
 namespace {
 
+// Whether the lens keeps the picture's order at a point; behind a fold it does not.
+bool KeepsOrder(const Eigen::Matrix2d& slope) { return slope.determinant() > 0.0 && slope.trace() > 0.0; }
+
 // Moves `point` to where the lens draws `goal`, by Newton's method, until the rest is at most `enough` or no
-// round changes it. False if there is no such point nearby.
+// round changes it. False if there is no such point nearby, or only one behind a fold.
 bool Approach(const Lens& lens, const Eigen::Vector2d& goal, double enough, Eigen::Vector2d& point) {
   constexpr int kRounds = 12;
   Eigen::Vector2d rest = goal - Distort(lens, point);
   for (int round = 0; round < kRounds && rest.norm() > enough; ++round) {
     const Eigen::Matrix2d slope = Slope(lens, point);
-    if (!(slope.determinant() > 0.0) || !(slope.trace() > 0.0)) {
+    if (!KeepsOrder(slope)) {
       return false;
     }
     const Eigen::Vector2d before = point;
@@ -59,7 +62,7 @@ bool Approach(const Lens& lens, const Eigen::Vector2d& goal, double enough, Eige
     }
     rest = goal - Distort(lens, point);
   }
-  return rest.norm() < std::max(enough, 1e-9);
+  return rest.norm() < std::max(enough, 1e-9) && KeepsOrder(Slope(lens, point));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <random>
 #include <tuple>
 
 #include "firmware/vision/detect/target_detector.hpp"
@@ -52,6 +53,41 @@ TEST(LensTest, LensThatFoldsThePictureIsRefused) {
   const Pinhole wide = MakePinhole(640, 480, 1.9);
   EXPECT_THROW(LensMap({-0.9, 0.0, 0.0, 0.0, 0.0}, wide), std::invalid_argument);
   EXPECT_THROW(LensMap({-0.5, 0.0, 0.0, 0.0, 0.0}, MakePinhole(64, 48, 2.6)), std::invalid_argument);
+}
+
+// The map goes along rows. It refuses the same lenses as the search from the centre for each of its points.
+TEST(LensTest, MapRefusesWhatTheSearchFromTheCentreRefuses) {
+  std::mt19937 engine(5);
+  const auto uniform = [&](double size) {
+    return std::uniform_real_distribution<double>(-size, size)(engine);
+  };
+  int refused = 0;
+  constexpr int kLenses = 300;
+  for (int k = 0; k < kLenses; ++k) {
+    const Lens lens{uniform(0.8), uniform(0.6), uniform(0.05), uniform(0.05), uniform(0.4)};
+    const Pinhole pinhole = MakePinhole(32, 24, 1.4);
+    bool all = true;
+    for (int i = 0; i < 4 * 32 * 24; ++i) {
+      const double u = i / 4 % 32 + (i % 2 == 0 ? -0.25 : 0.25);
+      const double v = i / 4 / 32 + (i % 4 < 2 ? -0.25 : 0.25);
+      Eigen::Vector2d ideal;
+      all = all &&
+            Undistort(lens, {(u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.FocalV()},
+                      ideal);
+    }
+    bool accepted = true;
+    try {
+      const LensMap map(lens, pinhole);
+    } catch (const std::invalid_argument&) {
+      accepted = false;
+    }
+    EXPECT_EQ(accepted, all) << lens.k1 << ' ' << lens.k2 << ' ' << lens.p1 << ' ' << lens.p2 << ' '
+                             << lens.k3;
+    refused += all ? 0 : 1;
+  }
+  std::cout << refused << " of " << kLenses << " refused\n";
+  EXPECT_GT(refused, 30);
+  EXPECT_LT(refused, 270);
 }
 
 // In a picture of brightness a + b u + c v each resampled pixel shows its ideal position.
