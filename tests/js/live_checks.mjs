@@ -5,7 +5,7 @@ import fs from "node:fs";
 import path from "node:path";
 
 import { sideways } from "./browser.mjs";
-import { drag, handAt, letGoInMotion, targetAt, untilBenchStands } from "./live_mouse.mjs";
+import { drag, letGoInMotion, targetAt, untilBenchStands, untilHandStands } from "./live_mouse.mjs";
 
 const pictures = (page, part) =>
   page.evaluate((id) => Number(document.querySelector(`#${id} canvas`)?.dataset.pictures || 0), part);
@@ -256,12 +256,14 @@ export async function checkTarget(page, sent) {
   await page.getByLabel("What the target does when it is let go").selectOption("stay");
 }
 
+// The arm of the log moves by more than the hand's size while a mouse comes to it: it is paused before it is taken.
 export async function checkPull(page, sent) {
   await page.getByRole("button", { name: "Pull arm" }).click();
+  await page.locator(".pause").click();
+  await waitForText(page, ".pause", /Run/);
   await untilBenchStands(page);
-  await waitForPictures(page, 2);
   let from = sent.length;
-  const hand = await handAt(page);
+  const hand = await untilHandStands(page);
   await drag(page, hand, { x: hand.x + 60, y: hand.y - 40 });
   const pull = await waitForSent(page, sent, from, /"to_B"/);
   assert.match(pull.link, /^(?!fovea)./, "a link of the robot");
@@ -269,6 +271,9 @@ export async function checkPull(page, sent) {
   from = sent.length;
   await page.mouse.up();
   await waitForSent(page, sent, from, /^\{\}$/);
+  await page.locator(".pause").click();
+  await waitForText(page, ".pause", /Pause/);
+  await waitForPictures(page, 2);
   await page.getByRole("button", { name: "Look", exact: true }).click();
 }
 

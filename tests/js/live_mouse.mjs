@@ -10,16 +10,22 @@ const placeOf = (page, what) =>
     return { x: box.left + x * box.width, y: box.top + y * box.height };
   }, what);
 export const targetAt = (page) => placeOf(page, "target");
-export const handAt = (page) => placeOf(page, "hand");
 
-// The page scrolls smoothly to what is clicked: waits until the bench stands.
-export async function untilBenchStands(page) {
-  const top = () => page.evaluate(() => document.querySelector("#bench canvas").getBoundingClientRect().top);
-  for (let last = NaN, now = await top(); now !== last; now = await top()) {
+// What `look` tells, as soon as it has told the same twice.
+async function onceItStands(page, look) {
+  for (let last, now = JSON.stringify(await look()); ; now = JSON.stringify(await look())) {
+    if (now === last) return JSON.parse(now);
     last = now;
-    await page.waitForTimeout(200);
+    await page.waitForTimeout(500);
   }
 }
+
+// The page scrolls smoothly to what is clicked: waits until the bench stands.
+export const untilBenchStands = (page) =>
+  onceItStands(page, () => page.evaluate(() => document.querySelector("#bench canvas").getBoundingClientRect().top));
+
+// Waits until the hand of a paused run stands in the picture, too. Returns its place.
+export const untilHandStands = (page) => onceItStands(page, () => placeOf(page, "hand"));
 
 export async function drag(page, from, to) {
   await page.mouse.move(from.x, from.y);
