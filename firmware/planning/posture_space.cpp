@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "firmware/core/barriers/disc_tilt_barrier.hpp"
-#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 #include "firmware/core/barriers/singularity.hpp"
 #include "firmware/core/model/cholesky.hpp"
 
@@ -115,7 +114,7 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   }
   steepest_ = std::max(kEdgeOn, std::min(kSteepest, CosineTo(start) - kFacingRoom));
   picture_room_ = std::min(kPictureRoom, PictureRoom(start));
-  sight_room_ = std::min(kSightRoom, Sight(start, bodies));
+  sight_room_ = std::min(kSightRoom, SightRoom(start, bodies));
   tilt_room_ = std::min(kTiltRoom, Tilt(start));
   return PlanOutcome::kFound;
 }
@@ -150,11 +149,14 @@ double PostureSpace::PictureRoom(const Posture& posture) const noexcept {
   return least - picture_room_;
 }
 
-double PostureSpace::Sight(const Posture& posture, const barriers::ArmBodies& bodies) const noexcept {
+barriers::Sight PostureSpace::SightAt(const Posture& posture,
+                                      const barriers::ArmBodies& bodies) const noexcept {
+  return {posture.poses, bodies, posture.X_BC, outline_, X_BO_, config_.guard.obstacles};
+}
+
+double PostureSpace::SightRoom(const Posture& posture, const barriers::ArmBodies& bodies) const noexcept {
   const double margin = config_.guard.sight_clearance;
-  return margin > 0.0
-             ? barriers::ClearanceOfSight({posture.poses, bodies, posture.X_BC, outline_, X_BO_}) - margin
-             : HUGE_VAL;
+  return margin > 0.0 ? barriers::ClearanceOfSight(SightAt(posture, bodies)) - margin : HUGE_VAL;
 }
 
 double PostureSpace::Tilt(const Posture& posture) const noexcept {
@@ -186,7 +188,7 @@ PostureSpace::Verdict PostureSpace::Judge(const Posture& posture, double share) 
     }
     verdict.travel = std::min(verdict.travel, solid_.ShareOf(i) * (value - bound_[k]));
   }
-  if (!(Sight(posture, bodies) >= needed(sight_room_))) {
+  if (!(SightRoom(posture, bodies) >= needed(sight_room_))) {
     return verdict;
   }
   verdict.is_free = true;
@@ -247,8 +249,7 @@ void PostureSpace::LimitsAt(const Posture& posture, const model::VecN& dq,
   for (const barriers::Barrier& side : posture.picture) {
     limits.Add(side);
   }
-  limits.Add(barriers::LineOfSightBarrier(config_, {posture.poses, bodies, posture.X_BC, outline_, X_BO_},
-                                          posture.J_C));
+  limits.Add(barriers::LineOfSightBarrier(config_, SightAt(posture, bodies), posture.J_C));
   if (config_.guard.view.enabled && !normal_B_.isZero()) {
     limits.Add(barriers::DiscTiltBarrier(config_.guard, posture.X_CO.p,
                                          posture.X_BC.R.transpose() * normal_B_, posture.J_C));

@@ -12,6 +12,7 @@
 #include "firmware/core/barriers/arm_bodies.hpp"
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 #include "firmware/core/barriers/levers.hpp"
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 #include "firmware/core/barriers/motion_limits.hpp"
 #include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/config/servo_config.hpp"
@@ -94,7 +95,9 @@ class PostureSpace {
   // Cosine between a flat target's normal and the line of sight.
   [[nodiscard]] static double CosineTo(const Posture& posture) noexcept;
   [[nodiscard]] double Tilt(const Posture& posture) const noexcept;
-  [[nodiscard]] double Sight(const Posture& posture, const barriers::ArmBodies& bodies) const noexcept;
+  [[nodiscard]] barriers::Sight SightAt(const Posture& posture,
+                                        const barriers::ArmBodies& bodies) const noexcept;
+  [[nodiscard]] double SightRoom(const Posture& posture, const barriers::ArmBodies& bodies) const noexcept;
 
   const config::ServoConfig& config_;
   barriers::SolidBarriers solid_;

@@ -4,6 +4,7 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btEmptyShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
@@ -63,7 +64,7 @@ struct BulletArm::Impl {
   RigidWorld world{&dispatcher, &broadphase, &solver, &collision_configuration};
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
-  std::unique_ptr<btCollisionObject> table;
+  std::vector<std::unique_ptr<btCollisionObject>> fixed;  // table and boxes
   std::unique_ptr<btMultiBody> body;
   std::vector<std::unique_ptr<btMultiBodyJointMotor>> stiction;  // one per moving joint; empty: no stiction
   Eigen::VectorXd coulomb;                                       // largest torques of `stiction`
@@ -88,8 +89,8 @@ struct BulletArm::Impl {
     for (const auto& collider : colliders) {
       world.removeCollisionObject(collider.get());
     }
-    if (table) {
-      world.removeCollisionObject(table.get());
+    for (const auto& object : fixed) {
+      world.removeCollisionObject(object.get());
     }
   }
 
@@ -128,14 +129,22 @@ struct BulletArm::Impl {
     world.addMultiBody(body.get());
     AddColliders();
     if (options.table) {
-      shapes.push_back(std::make_unique<TablePlane>());
-      table = std::make_unique<btCollisionObject>();
-      table->setCollisionShape(shapes.back().get());
-      world.addCollisionObject(table.get(), btBroadphaseProxy::StaticFilter,
-                               btBroadphaseProxy::DefaultFilter);
+      AddFixed(std::make_unique<TablePlane>(), Eigen::Vector3d::Zero());
+    }
+    for (const Eigen::AlignedBox3d& box : options.boxes) {
+      AddFixed(std::make_unique<btBoxShape>(ToBullet(Eigen::Vector3d(box.sizes())) * 0.5), box.center());
     }
     q.setZero(robot.num_dofs);
     dq.setZero(robot.num_dofs);
+  }
+
+  void AddFixed(std::unique_ptr<btCollisionShape> shape, const Eigen::Vector3d& p_B) {
+    fixed.push_back(std::make_unique<btCollisionObject>());
+    fixed.back()->setCollisionShape(shape.get());
+    fixed.back()->setWorldTransform(btTransform(btQuaternion::getIdentity(), ToBullet(p_B)));
+    world.addCollisionObject(fixed.back().get(), btBroadphaseProxy::StaticFilter,
+                             btBroadphaseProxy::DefaultFilter);
+    shapes.push_back(std::move(shape));
   }
 
   // The base always stands on the table, so it has no collider.

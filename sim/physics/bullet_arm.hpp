@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <vector>
 
 #include "sim/physics/integrator.hpp"
 #include "sim/robot/sim_robot.hpp"
@@ -16,6 +17,7 @@ namespace fovea::sim {
 struct BulletArmOptions {
   Integrator integrator = Integrator::kSemiImplicitEuler;
   bool table = true;  // a fixed plane at z = 0 of B, which the arm's collision shapes can touch
+  std::vector<Eigen::AlignedBox3d> boxes{};  // fixed in B, which they can touch, too
   bool gravity = true;
   bool may_be_loaded = false;  // SetLoad may be called; adds a body to the physics
 };
@@ -66,8 +68,8 @@ class BulletArm {
   // Kinetic and potential energy [J].
   [[nodiscard]] double Energy() const;
 
-  // Number of contact points with the table (negative gap, or a contact impulse) after the last step, or
-  // after SetState and FindContacts. The physics has no other contacts; see LinkTouch.
+  // Number of contact points with table and boxes (negative gap, or a contact impulse) after the last step,
+  // or after SetState and FindContacts. The physics has no other contacts; see LinkTouch.
   [[nodiscard]] int Contacts() const;
   void FindContacts();
 

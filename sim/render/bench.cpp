@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/render/bench.hpp"
 
+#include <algorithm>
+
 namespace fovea::sim {
 namespace {
 
@@ -105,6 +107,15 @@ Bench MakeBench(bool clutter) {
     AddClutter(bench);
   }
   return bench;
+}
+
+void AddObstacle(const Eigen::AlignedBox3d& box, Bench& bench) {
+  const Vector3f size = box.sizes().cast<float>();
+  const Vector3f centre = box.center().cast<float>();
+  const float bevel = std::min(kBevel, 0.2F * size.minCoeff());
+  bench.boxes.push_back(box);
+  bench.things.emplace_back().Append(MakeBox(size, bevel, kObstacleColour),
+                                     At(centre.x(), centre.y(), centre.z()));
 }
 
 }  // namespace fovea::sim

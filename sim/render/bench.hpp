@@ -26,8 +26,9 @@ struct Ball {
 };
 
 struct Bench {
-  std::vector<TexturedPlane> planes;  // near ones first
-  std::vector<Mesh> things;           // static things without a texture
+  std::vector<Eigen::AlignedBox3d> boxes;  // of AddObstacle; they are among `things`, too
+  std::vector<TexturedPlane> planes;       // near ones first
+  std::vector<Mesh> things;                // static things without a texture
   std::vector<Ball> balls;
 };
 
@@ -40,5 +41,10 @@ inline constexpr float kTableThickness = 0.036F;
 // The lab bench. `clutter` adds things of the target's colour and things of its shape; each differs from a
 // red ball of 80 mm in colour, shape or size.
 Bench MakeBench(bool clutter);
+
+inline const Eigen::Vector3f kObstacleColour(0.20F, 0.34F, 0.42F);
+
+// Adds a box that the arm has to avoid.
+void AddObstacle(const Eigen::AlignedBox3d& box, Bench& bench);
 
 }  // namespace fovea::sim

@@ -35,6 +35,13 @@ Eigen::Isometry3d At(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
+void AddObstacles(const Bench& bench, foxglove::SceneEntity& entity) {
+  for (const Eigen::AlignedBox3d& box : bench.boxes) {
+    const Eigen::Vector3d centre = box.center();
+    log::AddBox(At(centre.x(), centre.y(), centre.z()), box.sizes(), kObstacleColour, entity);
+  }
+}
+
 // The log's target frame has no orientation for a disc, so the disc is drawn in its initial orientation.
 void AddTarget(const RenderScene& scene, foxglove::SceneEntity& entity) {
   const TargetShape& target = scene.target;
@@ -88,12 +95,17 @@ std::vector<log::LinkFrame> MakeLinkFrames(const SimRobot& robot, const model::A
 foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
   foxglove::SceneUpdate update;
   for (const SimLink& link : scene.robot.links) {
-    if (link.visuals.empty()) {
+    // Boxes are shapes of the arm's base, so that pages draw them as they draw the arm.
+    const bool carries_boxes = link.parent < 0 && !scene.bench.boxes.empty();
+    if (link.visuals.empty() && !carries_boxes) {
       continue;
     }
     foxglove::SceneEntity& entity = log::AddEntity(link.name, link.name, update);
     for (const Shape& shape : link.visuals) {
       AddShape(shape, entity);
+    }
+    if (carries_boxes) {
+      AddObstacles(scene.bench, entity);
     }
   }
   const Eigen::Vector3d table = Eigen::Vector3f(kTableWidth, kTableDepth, kTableThickness).cast<double>();

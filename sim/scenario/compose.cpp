@@ -12,6 +12,7 @@
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "sim/camera/mix_bits.hpp"
+#include "sim/scenario/bench_boxes.hpp"
 #include "sim/scenario/roll_pitch_yaw.hpp"
 #include "sim/scenario/to_vector.hpp"
 
@@ -194,6 +195,9 @@ CommandedMotion MakeMotion(const Scenario& s) {
 RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
   RenderScene scene;
   scene.bench = MakeBench(s.target.clutter);
+  for (const Eigen::AlignedBox3d& box : BenchBoxes(s)) {
+    AddObstacle(box, scene.bench);
+  }
   scene.robot = robot;
   scene.has_eye = s.camera.enabled;
   scene.X_EC = CameraMount(s);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "firmware/host/config/input_error.hpp"
+#include "sim/scenario/bench_boxes.hpp"
 
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/scenario_arm.hpp"
@@ -78,6 +79,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
         "servo.learn is not allowed with camera.enabled = false: the servo needs to see");
   }
   CheckOutside(scenario, run.servo);
+  CheckBenchBoxes(scenario, run.servo);
   CheckGoal(scenario);
   CheckTimes(scenario);
   CheckEnd(scenario);

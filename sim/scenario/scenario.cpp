@@ -144,6 +144,8 @@ void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
                "zeta, omega_n and poles are fitted from the first time to the second");
 }
 
+constexpr std::size_t kMostBoxes = 16;  // on the bench
+
 fs::path ShippedFolder() { return config::ShareFolder() / "scenarios"; }
 
 // E.g. "ball" or "theory/open-loop".
@@ -177,6 +179,9 @@ config::KeyTable ScenarioKeys(Scenario& scenario) {
   AddCameraKeys(scenario, keys);
   config::AddVisionKeys(scenario.vision, keys);
   AddTargetSceneKeys(scenario.target, keys);
+  keys.Numbers("bench.boxes", scenario.boxes, 0, 6 * kMostBoxes, -100.0, 100.0, "m",
+               "boxes that stand on the bench: low x, y, z, high x, y, z of each; the servo knows those of "
+               "safety.boxes");
   config::AddServoKeys(scenario.servo, keys);
   AddMotionKeys(scenario, keys);
   AddTruthKeys(scenario.truth, keys);

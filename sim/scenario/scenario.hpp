@@ -67,6 +67,7 @@ struct Scenario {
   } camera;
 
   TargetScene target;
+  std::vector<double> boxes;  // on the bench: low x, y, z, high x, y, z of each [m]
 
   config::VisionSettings vision;
   config::ServoSettings servo;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "sim/scenario/bench_boxes.hpp"
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/to_vector.hpp"
 
@@ -32,6 +33,7 @@ WorldConfig MakeWorldConfig(const RunDescription& run) {
   config.robot_truth = run.robot_truth;
   SetArm(s, config);
   config.X_EC = run.eye.X_EC;
+  config.physics.boxes = BenchBoxes(s);
   config.target = MakeTargetMotion(s.target, SeedOf(s, RandomStream::kTarget));
   if (s.camera.enabled) {
     config.target_body = MakeTargetBody(MakeTargetShape(config::MakeTarget(s.target)));

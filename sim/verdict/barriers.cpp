@@ -126,6 +126,9 @@ void AddHand(const BarrierConfig& config, std::vector<TruthBarrier>& list) {
   for (int i = 0; i < obstacles.num_boxes; ++i) {
     keep_out("boxes", i, obstacles.boxes[static_cast<std::size_t>(i)]);
   }
+  for (std::size_t i = 0; i < config.boxes.size(); ++i) {
+    keep_out("bench.boxes", static_cast<int>(i), config.boxes[i]);
+  }
 }
 
 void AddContacts(std::vector<TruthBarrier>& list) {

@@ -25,6 +25,7 @@ struct BarrierConfig {
   double rotation_speed = 2.5;     // of the hand [rad/s]
   config::Obstacles obstacles;     // that the hand must avoid
   config::HandShape hand;          // camera and tools that move with the hand
+  std::vector<config::Box> boxes;  // that truly stand on the bench
 };
 
 // One step of the physics, input of the barriers.

@@ -75,6 +75,7 @@ World::World(const WorldConfig& config)
   if (config_.robot_truth.believed || !config_.joint_springs.empty()) {
     BulletArmOptions options = config_.physics;
     options.table = false;
+    options.boxes.clear();
     believed_.emplace(BelievedRobot(config_), options);
   }
   const Eigen::VectorXd dq_start =

@@ -57,7 +57,7 @@ struct WorldConfig : BenchFaults {
 
 // The arm's contacts.
 struct Contacts {
-  int bench = 0;  // contact points of links with the table
+  int bench = 0;  // contact points of links with table and boxes
   bool target = false;
   bool self = false;
   [[nodiscard]] bool Any() const { return bench > 0 || target || self; }

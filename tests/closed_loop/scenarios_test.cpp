@@ -30,6 +30,27 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall,
                            return name;
                          });
 
+// Another arm; another world: links and lines of sight go round boxes.
+class StillPlate : public testing::TestWithParam<const char*> {};
+
+TEST_P(StillPlate, ConvergesToTheGoal) {
+  const sim::Summary s = RunShipped(GetParam());
+  PrintResidual(s);
+  EXPECT_TRUE(s.converged);
+  EXPECT_GE(s.start_error_px.value(), 100.0);
+  EXPECT_LE(s.final_error_px_rms.value(), 0.5);
+  EXPECT_LE(s.final_error_mm.value(), 0.5);
+  EXPECT_LE(s.final_error_deg.value(), 0.2);
+  EXPECT_EQ(LastMode(s), "track");
+  ExpectSound(s);
+}
+INSTANTIATE_TEST_SUITE_P(Scenarios, StillPlate, testing::Values("triangle-gantry", "square-boxes"),
+                         [](const auto& scenario) {
+                           std::string name = scenario.param;
+                           name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+                           return name;
+                         });
+
 // Half a second without sight: the arm goes on by prediction and arrives no later.
 TEST(OccludedBall, IsReachedByPrediction) {
   const sim::Summary s = RunShipped("ball-occluded");

@@ -17,16 +17,24 @@ using trajectory::Plan;
 using trajectory::PlanRequest;
 using trajectory::Reference;
 
-// The hand's smallest distance from box 0 along the plan, every 0.2 ms.
-double SmallestDistance(const config::ServoConfig& config, const Plan& plan) {
+// The room of hand and links before box 0, beyond the margins of the tick's rows [m].
+double RoomBefore(const config::ServoConfig& config, const model::ArmPoses& poses) {
+  const barriers::SolidBarriers solid(config);
+  const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
+  const double margin = 2.0 * config.guard.workspace_margin;
+  return std::min(solid.ValueOf(1, poses, bodies) - margin,
+                  solid.ValueOf(2, poses, bodies) - margin - config.guard.link_clearance);
+}
+
+// The smallest along the plan, every 0.2 ms.
+double SmallestRoom(const config::ServoConfig& config, const Plan& plan) {
   double least = HUGE_VAL;
   Reference at;
   model::ArmPoses poses;
   for (double t = 0.0; t <= plan.Duration(); t += 2e-4) {
     plan.At(t, at);
     model::ComputePoses(config.arm, at.q, poses);
-    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
-    least = std::min(least, barriers::SolidBarriers(config).ValueOf(1, poses, bodies));
+    least = std::min(least, RoomBefore(config, poses));
   }
   return least;
 }
@@ -41,17 +49,16 @@ TEST(MotionProof, FindsEveryBoxOnTheWayAndNoOther) {
   std::int64_t most_work = 0;
   for (int k = 0; k < 400; ++k) {
     config::ServoConfig config = test::FreeServo();
-    const double margin = 2.0 * config.guard.workspace_margin;
     const model::VecN from = ready + 0.4 * random.Joints(config.arm, 1.0);
     const model::VecN to = ready + 0.4 * random.Joints(config.arm, 1.0);
     const Plan plan = test::TimedPlan(config, test::Line(from, to));
     ASSERT_TRUE(plan.IsSound());
-    // A box of some millimetres about a place near the hand's way.
+    // A box of some millimetres about a place near the hand's way, or the wrist's.
     Reference middle;
     plan.At(random.Uniform(0.2, 0.8) * plan.Duration(), middle);
     model::ArmPoses poses;
     model::ComputePoses(config.arm, middle.q, poses);
-    const model::Vec3 place = poses.X_BE.p + random.Vector(0.02);
+    const model::Vec3 place = poses.X_BE.p + random.Vector(0.15);
     const model::Vec3 half(random.Uniform(1e-4, 5e-3), random.Uniform(1e-4, 5e-3),
                            random.Uniform(1e-4, 5e-3));
     config.guard.obstacles.num_boxes = 1;
@@ -70,13 +77,12 @@ TEST(MotionProof, FindsEveryBoxOnTheWayAndNoOther) {
     Posture start;
     Work work(100'000);
     space.Place(from, work, start);
-    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, start.poses);
-    if (barriers::SolidBarriers(config).ValueOf(1, start.poses, bodies) < margin + 1e-3) {
+    if (RoomBefore(config, start.poses) < 1e-3) {
       continue;  // such a start has another bound: planner_refusal_test.cpp
     }
     const double first = planning::FirstBlocked(space, plan, work);
     most_work = std::max(most_work, 100'000 - work.left());
-    const double room = SmallestDistance(config, plan) - margin;
+    const double room = SmallestRoom(config, plan);
     if (first >= 0.0) {
       ++blocked;
       farthest_blocked = std::max(farthest_blocked, room);

@@ -104,9 +104,10 @@ class PlanWatch {
     }
     const model::Pose X_BC = poses.X_BE * config_.X_EC;
     const features::TargetOutline outline = config_.feature.Outline();
-    residual.sight =
-        std::min(residual.sight, barriers::ClearanceOfSight({poses, bodies, X_BC, outline, request_.X_BO}) -
-                                     config_.guard.sight_clearance);
+    residual.sight = std::min(
+        residual.sight,
+        barriers::ClearanceOfSight({poses, bodies, X_BC, outline, request_.X_BO, config_.guard.obstacles}) -
+            config_.guard.sight_clearance);
     const double least = std::min(config_.guard.view.disc_cosine_min, TiltAt(request_.start.q));
     residual.tilt = std::min(residual.tilt, TiltAt(q) - least);
     if (config_.feature.SeesOrientation()) {

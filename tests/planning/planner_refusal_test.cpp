@@ -121,16 +121,30 @@ TEST_F(PlannerRefusal, AGoalPastALimitIsNamedWithTheLimit) {
   EXPECT_EQ(plan_.blocker, hal::Limit::kObstacle);
 }
 
-TEST_F(PlannerRefusal, AWallWithoutAWayAroundItIsNamed) {
-  // Two boxes beside the hand that leave no path to the goal's side.
-  config_.guard.obstacles.num_boxes = 1;
-  config_.guard.obstacles.boxes[0] = {{-2.0, 0.10, -2.0}, {2.0, 0.14, 2.0}};
-  PlanRequest request = FromReady(config_, kAhead);
-  request.X_BO.p.y() += 0.24;
-  config_.guard.view.enabled = false;
-  config_.guard.sight_clearance = 0.0;
-  request.budget = 60'000;
-  EXPECT_EQ(OutcomeOf(request), PlanOutcome::kNoPath);
+// A wall or a beam beside the hand, which has to get to its other side.
+class PlannerBehindABox : public PlannerRefusal {
+ protected:
+  PlanOutcome Behind(double low, double high, int budget) {
+    config_.guard.obstacles.num_boxes = 1;
+    config_.guard.obstacles.boxes[0] = {{-2.0, 0.10, low}, {2.0, 0.14, high}};
+    config_.guard.view.enabled = false;
+    config_.guard.sight_clearance = 0.0;
+    PlanRequest request = FromReady(config_, kAhead);
+    request.X_BO.p.y() += 0.24;
+    request.budget = budget;
+    return Answer(request).outcome;
+  }
+};
+
+TEST_F(PlannerBehindABox, AWallWithoutAWayAroundItIsNamed) {
+  EXPECT_EQ(Behind(-2.0, 2.0, 60'000), PlanOutcome::kGoalNotClear);  // the arm itself would be in the wall
+  EXPECT_EQ(plan_.blocker, hal::Limit::kObstacle);
+}
+
+TEST_F(PlannerBehindABox, ABudgetThatEndsBeforeTheWayIsFoundIsNamed) {
+  EXPECT_EQ(Behind(0.4, 0.6, 20'000), PlanOutcome::kNoPath);
+  EXPECT_EQ(Behind(0.4, 0.6, 60'000), PlanOutcome::kFound);
+  EXPECT_EQ(Behind(-2.0, 0.4, 5'000), PlanOutcome::kFound) << "over a lower wall";
 }
 
 TEST_F(PlannerRefusal, AFeatureThatLeavesTheGoalOpenIsNamed) {

@@ -72,7 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Arms, PlannerOn,
                                          Pair{"ur5e", "sphere"}, Pair{"ur5e", "circle"},
                                          Pair{"ur5e", "square"}, Pair{"ur5e", "triangle"},
                                          Pair{"puma560", "sphere"}, Pair{"puma560", "circle"},
-                                         Pair{"puma560", "square"}, Pair{"puma560", "triangle"}),
+                                         Pair{"puma560", "square"}, Pair{"puma560", "triangle"},
+                                         Pair{"gantry", "sphere"}, Pair{"gantry", "triangle"}),
                          [](const testing::TestParamInfo<Pair>& pair) {
                            return std::string(pair.param.arm) + "_" + pair.param.target;
                          });

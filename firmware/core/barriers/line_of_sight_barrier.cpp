@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "firmware/core/barriers/obstacle.hpp"
 #include "firmware/core/model/segments.hpp"
 
 namespace fovea::barriers {
@@ -10,16 +11,19 @@ namespace {
 
 using model::Vec3;
 
-// The closest approach of a line of sight and a link.
-struct LinkAtSight {
-  model::SegmentPair axes;  // first: line of sight from the camera; second: the link's axis
-  double gap = HUGE_VAL;    // from the line of sight to the link [m]
-  int body = 0;             // the link
+// The closest approach of a line of sight to a link or a box.
+struct NearSight {
+  double gap = HUGE_VAL;      // between them [m]
+  double s = 0.0;             // place on the line of sight, as a share from the camera
+  Vec3 apart = Vec3::Zero();  // from the link or box to that place, in B [m]
+  Vec3 p_BL = Vec3::Zero();   // on the link's axis [m]
+  int body = 0;               // the link; 0: the base or a box, which do not move
 };
 
-// Over all links and all lines of sight.
-LinkAtSight NearestLink(const Sight& sight) noexcept {
-  LinkAtSight nearest;
+// Over all links, boxes and lines of sight.
+NearSight NearestOf(const Sight& sight) noexcept {
+  constexpr double kShare = 0.9;  // of a line, from the camera, that boxes must keep clear
+  NearSight nearest;
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
     const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];
     for (int i = 0; i + model::ArmShape::kNeighbours + 1 < sight.bodies.size; ++i) {
@@ -27,7 +31,14 @@ LinkAtSight NearestLink(const Sight& sight) noexcept {
       const model::SegmentPair axes = model::NearestOfSegments(sight.X_BC.p, p_BP, link.p_BA, link.p_BB);
       const double gap = axes.distance - link.radius;
       if (gap < nearest.gap) {
-        nearest = {axes, gap, i};
+        nearest = {gap, axes.s, axes.on_first - axes.on_second, axes.on_second, i};
+      }
+    }
+    for (int i = 0; i < sight.obstacles.num_boxes; ++i) {
+      const SegmentClearance box = ClearanceOf(sight.obstacles, sight.obstacles.num_planes + i, sight.X_BC.p,
+                                               sight.X_BC.p + kShare * (p_BP - sight.X_BC.p));
+      if (box.clearance.distance < nearest.gap) {
+        nearest = {box.clearance.distance, kShare * box.s, box.clearance.away, Vec3::Zero(), 0};
       }
     }
   }
@@ -36,7 +47,7 @@ LinkAtSight NearestLink(const Sight& sight) noexcept {
 
 }  // namespace
 
-double ClearanceOfSight(const Sight& sight) noexcept { return NearestLink(sight).gap; }
+double ClearanceOfSight(const Sight& sight) noexcept { return NearestOf(sight).gap; }
 
 Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight,
                            const model::Mat6N& J_C) noexcept {
@@ -45,19 +56,21 @@ Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight
   if (config.guard.sight_clearance <= 0.0) {
     return barrier;
   }
-  const LinkAtSight nearest = NearestLink(sight);
-  const model::SegmentPair& axes = nearest.axes;
-  if (!std::isfinite(nearest.gap) || !(axes.distance > kTouch)) {
+  const NearSight nearest = NearestOf(sight);
+  const double distance = nearest.apart.norm();
+  if (!std::isfinite(nearest.gap) || !(distance > kTouch)) {
     return barrier;
   }
-  const Vec3 apart = (axes.on_first - axes.on_second) / axes.distance;
+  const Vec3 apart = nearest.apart / distance;
   // d/dt distance = apart . (v_sight - v_link); the line of sight pivots about the fixed target.
   const Vec3 apart_C = sight.X_BC.R.transpose() * apart;
-  barrier.gradient = (1.0 - axes.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
-  model::LinearJacobian J_link;
-  model::ComputeLinearJacobian(config.arm, sight.poses, axes.on_second, J_link);
-  for (int i = 0; i < nearest.body; ++i) {
-    barrier.gradient[i] -= J_link.col(i).dot(apart);
+  barrier.gradient = (1.0 - nearest.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
+  if (nearest.body > 0) {
+    model::LinearJacobian J_link;
+    model::ComputeLinearJacobian(config.arm, sight.poses, nearest.p_BL, J_link);
+    for (int i = 0; i < nearest.body; ++i) {
+      barrier.gradient[i] -= J_link.col(i).dot(apart);
+    }
   }
   barrier.name = hal::Limit::kFieldOfView;
   barrier.value = nearest.gap;

@@ -12,25 +12,25 @@ namespace {
 
 using model::Vec3;
 
-// The closest approach of a link and a plane.
-struct NearestPlane {
+// The closest approach of a link to the planes or the box of a row.
+struct NearestLink {
   Clearance clearance{HUGE_VAL, Vec3::UnitZ()};
-  Vec3 p_BP = Vec3::Zero();  // end of the nearest body's axis [m]
+  Vec3 p_BP = Vec3::Zero();  // on the axis of the nearest body [m]
   int body = -1;
 };
 
-NearestPlane NearestOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept {
-  const config::Obstacles& obstacles = guard.obstacles;
-  NearestPlane nearest;
-  for (int k = std::max(bodies.size - kOuterLinks, 1); k < bodies.size; ++k) {
+NearestLink NearestOf(const config::Obstacles& obstacles, int i, const ArmBodies& bodies) noexcept {
+  const bool planes = i == 0 && obstacles.num_planes > 0;
+  const int first = planes ? 0 : obstacles.num_planes + i - (obstacles.num_planes > 0 ? 1 : 0);
+  const int end = planes ? obstacles.num_planes : first + 1;
+  NearestLink nearest;
+  for (int k = planes ? std::max(bodies.size - kOuterLinks, 1) : 1; k < bodies.size; ++k) {
     const PlacedCapsule& body = bodies.body[static_cast<std::size_t>(k)];
-    for (int i = 0; i < obstacles.num_planes; ++i) {
-      for (const Vec3& end : {body.p_BA, body.p_BB}) {
-        Clearance clearance = ClearanceOf(obstacles, i, end);
-        clearance.distance -= body.radius;
-        if (clearance.distance < nearest.clearance.distance) {
-          nearest = {clearance, end, k};
-        }
+    for (int obstacle = first; obstacle < end; ++obstacle) {
+      SegmentClearance axis = ClearanceOf(obstacles, obstacle, body.p_BA, body.p_BB);
+      axis.clearance.distance -= body.radius;
+      if (axis.clearance.distance < nearest.clearance.distance) {
+        nearest = {axis.clearance, axis.p_B, k};
       }
     }
   }
@@ -39,14 +39,14 @@ NearestPlane NearestOfPlanes(const config::GuardConfig& guard, const ArmBodies& 
 
 }  // namespace
 
-double ClearanceOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept {
-  return NearestOfPlanes(guard, bodies).clearance.distance;
+double ClearanceOfLinks(const config::Obstacles& obstacles, int i, const ArmBodies& bodies) noexcept {
+  return NearestOf(obstacles, i, bodies).clearance.distance;
 }
 
-Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
+Barrier LinksBarrier(const config::ServoConfig& config, int i, const model::ArmPoses& poses,
                      const ArmBodies& bodies) noexcept {
   const model::ArmModel& arm = config.arm;
-  const NearestPlane nearest = NearestOfPlanes(config.guard, bodies);
+  const NearestLink nearest = NearestOf(config.guard.obstacles, i, bodies);
   Barrier barrier;
   if (!std::isfinite(nearest.clearance.distance)) {
     return barrier;
@@ -54,8 +54,8 @@ Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& p
   model::LinearJacobian J;
   model::ComputeLinearJacobian(arm, poses, nearest.p_BP, J);
   barrier.gradient = model::VecN::Zero(arm.num_joints);
-  for (int i = 0; i < nearest.body; ++i) {
-    barrier.gradient[i] = J.col(i).dot(nearest.clearance.away);
+  for (int k = 0; k < nearest.body; ++k) {
+    barrier.gradient[k] = J.col(k).dot(nearest.clearance.away);
   }
   barrier.name = hal::Limit::kObstacle;
   barrier.value = nearest.clearance.distance;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the arm's links above the planes that limit its hand.
+// Keeps the arm's links away from the planes and boxes that limit its hand.
 //
-// While the hand is clear, the elbow or the wrist can still hit the table. The barrier covers the last four
-// links: forearm, wrist and hand of an arm with six or seven joints. The links before them cannot reach the
-// surface that the base stands on, and are as clear of a wall as the base is.
+// While the hand is clear, the elbow or the wrist can still hit the table. Against planes the barrier covers
+// the last four links: forearm, wrist and hand of an arm with six or seven joints. The links before them
+// cannot reach the surface that the base stands on, and are as clear of a wall as the base is. Against boxes
+// it covers all links that move. There is one row for all planes together, and one for each box.
 #pragma once
 
 #include "firmware/core/barriers/arm_bodies.hpp"
@@ -13,15 +14,22 @@
 
 namespace fovea::barriers {
 
-inline constexpr int kOuterLinks = 4;  // the barrier covers these last links
+inline constexpr int kOuterLinks = 4;  // of these, planes keep clear
 
-// The smallest distance of these links from a plane [m]; HUGE_VAL without planes. Real-time: yes.
-[[nodiscard]] double ClearanceOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept;
+// Number of rows: the planes', if there are any, then each box's.
+[[nodiscard]] inline int CountLinkRows(const config::Obstacles& obstacles) noexcept {
+  return (obstacles.num_planes > 0 ? 1 : 0) + obstacles.num_boxes;
+}
 
-// The barrier that keeps this distance above guard.link_clearance [m] plus twice the workspace margin. The
-// links approach no faster than they can stop. A link that is already nearer must not come nearer still.
+// The smallest distance of these links from the planes or the box of row `i` [m], 0 <= i < CountLinkRows.
 // Real-time: yes.
-[[nodiscard]] Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
+[[nodiscard]] double ClearanceOfLinks(const config::Obstacles& obstacles, int i,
+                                      const ArmBodies& bodies) noexcept;
+
+// The barrier that keeps the distance of row `i` above guard.link_clearance [m] plus twice the workspace
+// margin. The links approach no faster than they can stop. A link that is already nearer must not come nearer
+// still. Real-time: yes.
+[[nodiscard]] Barrier LinksBarrier(const config::ServoConfig& config, int i, const model::ArmPoses& poses,
                                    const ArmBodies& bodies) noexcept;
 
 }  // namespace fovea::barriers

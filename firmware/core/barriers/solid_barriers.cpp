@@ -21,14 +21,14 @@ constexpr double kSelfRoom = 0.01;
 SolidBarriers::SolidBarriers(const config::ServoConfig& config) noexcept
     : config_(config),
       num_hand_(CountObstacles(config.guard.obstacles)),
-      links_(config.guard.obstacles.num_planes > 0),
+      num_links_(CountLinkRows(config.guard.obstacles)),
       self_(config.guard.self_clearance > 0.0) {}
 
 SolidBarriers::Kind SolidBarriers::KindOf(int i) const noexcept {
   if (i <= num_hand_) {
     return i == 0 ? Kind::kWorkspace : Kind::kHand;
   }
-  return links_ && i == num_hand_ + 1 ? Kind::kLinks : Kind::kSelf;
+  return i <= num_hand_ + num_links_ ? Kind::kLinks : Kind::kSelf;
 }
 
 hal::Limit SolidBarriers::NameOf(int i) const noexcept {
@@ -40,7 +40,7 @@ double SolidBarriers::ValueOf(int i, const model::ArmPoses& poses, const ArmBodi
   switch (KindOf(i)) {
     case Kind::kWorkspace: return -poses.X_BE.p.norm();
     case Kind::kHand: return ClearanceOf(guard.obstacles, i - 1, guard.hand, poses.X_BE).clearance.distance;
-    case Kind::kLinks: return ClearanceOfPlanes(guard, bodies);
+    case Kind::kLinks: return ClearanceOfLinks(guard.obstacles, i - 1 - num_hand_, bodies);
     case Kind::kSelf: break;
   }
   return SelfClearance(config_.arm, bodies);
@@ -61,7 +61,7 @@ Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
   switch (KindOf(i)) {
     case Kind::kWorkspace: return WorkspaceRow(config_, scene.poses.X_BE.p, scene.J_E_B, scene.dq);
     case Kind::kHand: return HandBarrier(config_, i - 1, scene.poses);
-    case Kind::kLinks: return LinksBarrier(config_, scene.poses, scene.bodies);
+    case Kind::kLinks: return LinksBarrier(config_, i - 1 - num_hand_, scene.poses, scene.bodies);
     case Kind::kSelf: break;
   }
   return SelfClearanceBarrier(config_, scene.poses, scene.bodies);
@@ -69,7 +69,11 @@ Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
 
 double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {
   const config::GuardConfig& guard = config.guard;
-  double clearance = ClearanceOfPlanes(guard, PlaceBodies(config.arm, poses));
+  const ArmBodies bodies = PlaceBodies(config.arm, poses);
+  double clearance = HUGE_VAL;
+  for (int i = 0; i < CountLinkRows(guard.obstacles); ++i) {
+    clearance = std::min(clearance, ClearanceOfLinks(guard.obstacles, i, bodies));
+  }
   for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
     clearance =
         std::min(clearance, ClearanceOf(guard.obstacles, i, guard.hand, poses.X_BE).clearance.distance);

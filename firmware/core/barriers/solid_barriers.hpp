@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One table of everything that the arm can collide with: the workspace's edge, each plane and box (for the
-// hand), the planes (for the links), and the arm itself.
+// hand), the planes and each box (for the links), and the arm itself.
 //
 // The resolution keeps each as a row, and the guard proves a stop before each. Both use this table.
 #pragma once
@@ -14,11 +14,11 @@ namespace fovea::barriers {
 
 class SolidBarriers {
  public:
-  static constexpr int kMost = 1 + 2 * config::Obstacles::kMost + 2;
+  static constexpr int kMost = 1 + 2 * config::Obstacles::kMost + (1 + config::Obstacles::kMost) + 1;
 
   explicit SolidBarriers(const config::ServoConfig& config) noexcept;
 
-  [[nodiscard]] int size() const noexcept { return num_hand_ + (links_ ? 1 : 0) + (self_ ? 1 : 0) + 1; }
+  [[nodiscard]] int size() const noexcept { return 1 + num_hand_ + num_links_ + (self_ ? 1 : 0); }
   [[nodiscard]] hal::Limit NameOf(int i) const noexcept;
   // h of barrier `i` [m], 0 <= i < size(), with the arm's links at `poses`; `bodies`: their capsules there.
   // Real-time: yes.
@@ -43,8 +43,8 @@ class SolidBarriers {
   [[nodiscard]] Kind KindOf(int i) const noexcept;
 
   const config::ServoConfig& config_;
-  int num_hand_;  // one for each plane and box
-  bool links_;
+  int num_hand_;   // one for each plane and box
+  int num_links_;  // one for all planes, one for each box
   bool self_;
 };
 

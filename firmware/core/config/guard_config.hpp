@@ -18,7 +18,7 @@ struct Plane {
   double distance = 0.0;                      // [m]
 };
 
-// Planes (for hand and links) and boxes (for the hand) that the arm avoids.
+// Planes and boxes that hand and links avoid. Boxes must not hide the target either.
 struct Obstacles {
   static constexpr int kMost = 4;  // planes, and as many boxes
   int num_planes = 0;
@@ -124,9 +124,11 @@ void Fields(Visitor& v, Config& c) noexcept {
       {"safety.planes", "m",
        "planes n p >= d that hand, camera, tools and the arm's links stay above: n_x, n_y, n_z, d of each"},
       c.obstacles.num_planes, Obstacles::kMost);
-  v.Count({"safety.boxes", "m",
-           "boxes that hand, camera and tools stay out of: low x, y, z, high x, y, z of each"},
-          c.obstacles.num_boxes, Obstacles::kMost);
+  v.Count(
+      {"safety.boxes", "m",
+       "boxes that hand, camera, tools, links and lines of sight stay out of: low x, y, z, high x, y, z of "
+       "each"},
+      c.obstacles.num_boxes, Obstacles::kMost);
   for (auto& plane : c.obstacles.planes) {
     v.Derived({"safety.planes"}, plane.normal, -1.0, 1.0);
     v.Derived({"safety.planes"}, plane.distance, -1e9, 1e9);
@@ -143,8 +145,8 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Derived({"safety.view_margin_px"}, c.view.y_max, -1e6, 1e6);
   v.Number(
       {"safety.sight_clearance", "m",
-       "distance of the arm's own links from the lines of sight to the target; a link that is nearer may "
-       "not come nearer still; 0: no limit"},
+       "distance of the arm's own links, and of boxes, from the lines of sight to the target; what is nearer "
+       "may not come nearer still; 0: no limit"},
       c.sight_clearance, 0.0, 10.0);
   v.Derived(
       {"safety.disc_tilt_max", "rad",
@@ -163,8 +165,8 @@ void Fields(Visitor& v, Config& c) noexcept {
     v.Derived({"safety.tools"}, ball.p_EP, -1e6, 1e6);
     v.Derived({"safety.tools"}, ball.radius, 0.0, 1e6);
   }
-  v.Number({"safety.link_clearance", "m", "distance of the arm's links from planes"}, c.link_clearance, 0.0,
-           1.0);
+  v.Number({"safety.link_clearance", "m", "distance of the arm's links from planes and boxes"},
+           c.link_clearance, 0.0, 1.0);
   v.Number({"safety.barrier_rate", "1/s",
             "the distances to the picture's edge, to a line of sight, to a disc's largest tilt and between "
             "the arm's links shrink no faster than exp(-rate t)"},

@@ -52,9 +52,10 @@ void Gather(const config::ServoConfig& config, const MotionScene& scene, barrier
       limits.Add(side);
     }
     const model::Pose X_BC = scene.poses.X_BE * config.X_EC;
-    limits.Add(barriers::LineOfSightBarrier(
-        config, {scene.poses, bodies, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO},
-        scene.target->J_C));
+    limits.Add(barriers::LineOfSightBarrier(config,
+                                            {scene.poses, bodies, X_BC, scene.target->outline,
+                                             X_BC * scene.target->seen.X_CO, config.guard.obstacles},
+                                            scene.target->J_C));
     if (config.guard.view.enabled && !scene.target->normal_C.isZero()) {
       limits.Add(barriers::DiscTiltBarrier(config.guard, scene.target->seen.X_CO.p, scene.target->normal_C,
                                            scene.target->J_C));

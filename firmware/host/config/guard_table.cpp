@@ -42,7 +42,7 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kObstacle:
       return {
           "distance of hand, camera and tools (`safety.camera_radius`, `safety.tools`) from planes and "
-          "boxes, of links from planes (`safety.link_clearance`), of the arm's links from each other "
+          "boxes, of links from both (`safety.link_clearance`), of the arm's links from each other "
           "(`safety.self_clearance`), now and on the stopping path",
           "as at the workspace's boundary; an arm that starts inside an obstacle stays in Boot"};
     case hal::Limit::kCartesianSpeed:
@@ -59,7 +59,7 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kFieldOfView:
       return {
           "distance of the target from the edge of the picture, less this margin; distance of the arm's "
-          "links from the lines of sight; tilt of a disc's face (safety.disc_tilt_max)",
+          "links and of boxes from the lines of sight; tilt of a disc's face (safety.disc_tilt_max)",
           "the approach slows down; the task slides along the boundary"};
   }
   return {"", ""};

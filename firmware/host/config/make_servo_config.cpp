@@ -168,13 +168,9 @@ void CheckSize(const char* key, const std::vector<double>& values, const NamedAr
 
 void SetObstacles(const ServoSettings& settings, Obstacles& obstacles) {
   const std::vector<double>& planes = settings.planes;
-  const std::vector<double>& boxes = settings.boxes;
   if (planes.size() % 4 != 0) {
     throw InputError(
         fmt::format("safety.planes has {} entries: four for each plane are allowed", planes.size()));
-  }
-  if (boxes.size() % 6 != 0) {
-    throw InputError(fmt::format("safety.boxes has {} entries: six for each box are allowed", boxes.size()));
   }
   for (std::size_t i = 0; i < planes.size(); i += 4) {
     const model::Vec3 normal(planes[i], planes[i + 1], planes[i + 2]);
@@ -185,13 +181,8 @@ void SetObstacles(const ServoSettings& settings, Obstacles& obstacles) {
     obstacles.planes[static_cast<std::size_t>(obstacles.num_planes++)] = {normal / length,
                                                                           planes[i + 3] / length};
   }
-  for (std::size_t i = 0; i < boxes.size(); i += 6) {
-    Box& box = obstacles.boxes[static_cast<std::size_t>(obstacles.num_boxes++)];
-    box.low = {boxes[i], boxes[i + 1], boxes[i + 2]};
-    box.high = {boxes[i + 3], boxes[i + 4], boxes[i + 5]};
-    if (!(box.low.array() < box.high.array()).all()) {
-      throw InputError("safety.boxes: each low corner must be below its high corner");
-    }
+  for (const Box& box : MakeBoxes("safety.boxes", settings.boxes)) {
+    obstacles.boxes[static_cast<std::size_t>(obstacles.num_boxes++)] = box;
   }
 }
 
@@ -263,6 +254,20 @@ void SetMotionLaw(const ServoSettings& settings, const NamedArm& arm, MotionLawC
 }
 
 }  // namespace
+
+std::vector<Box> MakeBoxes(const std::string& key, const std::vector<double>& corners) {
+  if (corners.size() % 6 != 0) {
+    throw InputError(fmt::format("{} has {} entries: six for each box are allowed", key, corners.size()));
+  }
+  std::vector<Box> boxes;
+  for (auto box = corners.begin(); box != corners.end(); box += 6) {
+    boxes.push_back({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
+    if (!(boxes.back().low.array() < boxes.back().high.array()).all()) {
+      throw InputError(key + ": each low corner must be below its high corner");
+    }
+  }
+  return boxes;
+}
 
 ServoConfig MakeServoConfig(const ServoSettings& settings, const NamedArm& arm, const model::Pose& X_EC,
                             const vision::Intrinsics& intrinsics, const TargetSettings& target) {

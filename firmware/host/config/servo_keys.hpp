@@ -48,6 +48,10 @@ LearntQuantities LearntOf(const ServoSettings& settings);
 // Scales gains and speed limits by robot.speed_scale.
 void ScaleSpeed(double scale, ServoSettings& settings);
 
+// Boxes from the numbers of `key`: low x, y, z, high x, y, z of each [m]. InputError, which names the key: no
+// whole number of boxes, or a low corner that is not below its high one.
+std::vector<Box> MakeBoxes(const std::string& key, const std::vector<double>& corners);
+
 struct NamedArm {
   std::string name;  // for messages
   model::ArmModel model;

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 #include <vector>
 
 #include "firmware/core/barriers/motion_limits.hpp"
+#include "firmware/core/barriers/obstacle.hpp"
 #include "firmware/core/features/triangle.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "tests/support/panda.hpp"
@@ -44,9 +46,13 @@ Vec3 RandomTarget(test::RandomStates& random, const Posture& posture) {
   return posture.X_BC * p_C;
 }
 
+const config::Obstacles kNoObstacles;
+
 // A target of one point, or a turned triangle.
-Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle) {
-  Sight sight{posture.poses, posture.bodies, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
+Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle,
+              const config::Obstacles& obstacles = kNoObstacles) {
+  Sight sight{posture.poses, posture.bodies, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO},
+              obstacles};
   sight.outline.num_points = triangle ? 3 : 1;
   sight.outline.p_OP[0].setZero();
   if (triangle) {
@@ -123,6 +129,71 @@ TEST(LineOfSightBarrierTest, RowMatchesFiniteDifferenceOfClearance) {
   std::cout << "off by at most " << worst << " m/s; " << beyond << " of 300 below the clearance\n";
   EXPECT_LT(worst, 1e-7);
   EXPECT_GT(beyond, 20);
+}
+
+// A box somewhere between camera and target, or beside them.
+config::Obstacles BoxNear(test::RandomStates& random, const Posture& posture, const Vec3& p_BO) {
+  config::Obstacles obstacles;
+  obstacles.num_planes = 1;  // planes do not count
+  obstacles.num_boxes = 1;
+  const Vec3 middle =
+      0.5 * (posture.X_BC.p + p_BO) + random.Joints(test::PandaConfig().arm, 1.0).head<3>() * 0.1;
+  const Vec3 half(0.03, 0.05, 0.04);
+  obstacles.boxes[0] = {middle - half, middle + half};
+  return obstacles;
+}
+
+// The last tenth of a line does not count.
+TEST(LineOfSightBarrierTest, BoxesKeepOutOfTheLinesOfSightBeforeTheTarget) {
+  config::ServoConfig config = WithClearance(0.12);
+  test::RandomStates random(73);
+  double worst_search = 0.0;
+  double worst_rate = 0.0;
+  int boxes = 0;
+  int hidden = 0;
+  for (int k = 0; k < 300; ++k) {
+    const VecN q = RandomPosture(random, config);
+    const Posture posture(config, q);
+    const Vec3 p_BO = RandomTarget(random, posture);
+    config.guard.obstacles = BoxNear(random, posture, p_BO);
+    const config::Obstacles& obstacles = config.guard.obstacles;
+    const double alone = ClearanceOfSight(SightOf(posture, p_BO, false));
+    double least = alone;
+    constexpr int kPoints = 1000;
+    for (int i = 0; i <= kPoints; ++i) {
+      const Vec3 p = posture.X_BC.p + i * 0.9 / kPoints * (p_BO - posture.X_BC.p);
+      least = std::min(least, ClearanceOf(obstacles, 1, p).distance);
+    }
+    const auto clearance = [&](const VecN& at) {
+      const Posture there(config, at);
+      return ClearanceOfSight(SightOf(there, p_BO, false, obstacles));
+    };
+    const double gap = clearance(q);
+    EXPECT_LT(gap, least + 1e-12);
+    worst_search = std::max(worst_search, least - gap);
+    if (gap == alone) {
+      continue;
+    }
+    ++boxes;
+    if (gap < 0.0) {  // the nearest face may change from one side of the difference to the other
+      ++hidden;
+      continue;
+    }
+    MotionLimits limits;
+    limits.Add(LineOfSightBarrier(config, SightOf(posture, p_BO, false, obstacles), posture.J_C));
+    ASSERT_EQ(limits.num_rows, 1);
+    const VecN dq = random.Joints(config.arm, 0.5);
+    constexpr double kDt = 1e-6;
+    const double rate = (clearance(q + kDt * dq) - clearance(q - kDt * dq)) / (2.0 * kDt);
+    worst_rate = std::max(worst_rate, std::abs(limits.rows[0].a.dot(dq) + rate));
+  }
+  std::cout << boxes << " of 300 boxes are nearer than links, " << hidden
+            << " hide the target; the search finds up to " << 1e3 * worst_search
+            << " mm more, rows are off by at most " << worst_rate << " m/s\n";
+  EXPECT_LT(worst_search, 0.001);
+  EXPECT_LT(worst_rate, 1e-6);
+  EXPECT_GT(boxes, 100);
+  EXPECT_GT(hidden, 10);
 }
 
 TEST(LineOfSightBarrierTest, NoRowWithoutAClearanceLimitOrWhereTheLinesCross) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances to planes and boxes, against a search over their surfaces.
+// Distances to planes and boxes, against searches.
 #include "firmware/core/barriers/obstacle.hpp"
 
 #include <gtest/gtest.h>
@@ -48,6 +48,42 @@ TEST(ObstacleTest, BoxDistanceIsThatOfItsNearestPoint) {
   std::cout << "distances off by " << worst << " m, " << inside << " points inside the box\n";
   EXPECT_LT(worst, 1e-14);
   EXPECT_GT(inside, 100);
+}
+
+// Every third segment runs along an axis, every seventh is a point.
+TEST(ObstacleTest, SegmentClearanceIsTheSmallestFoundByASearch) {
+  config::Obstacles obstacles;
+  obstacles.num_planes = 1;
+  obstacles.planes[0] = {model::Vec3(0.0, 0.6, 0.8), 0.2};
+  obstacles.num_boxes = 1;
+  obstacles.boxes[0] = {{-0.1, -0.2, 0.0}, {0.3, 0.1, 0.5}};
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  constexpr int kPoints = 1000;
+  double worst = 0.0;
+  int entering = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const model::Vec3 a(uniform(random), uniform(random), uniform(random));
+    model::Vec3 b(uniform(random), uniform(random), uniform(random));
+    b = n % 7 == 0 ? a : n % 3 == 0 ? model::Vec3(a + b.x() * model::Vec3::Unit(n % 9 / 3)) : b;
+    for (int i = 0; i < 2; ++i) {
+      const SegmentClearance nearest = ClearanceOf(obstacles, i, a, b);
+      ASSERT_TRUE(nearest.s >= 0.0 && nearest.s <= 1.0);
+      EXPECT_LT((a + nearest.s * (b - a) - nearest.p_B).norm(), 1e-15);
+      EXPECT_EQ(ClearanceOf(obstacles, i, nearest.p_B).distance, nearest.clearance.distance);
+      double least = HUGE_VAL;
+      for (int k = 0; k <= kPoints; ++k) {
+        least = std::min(least, ClearanceOf(obstacles, i, a + k / double{kPoints} * (b - a)).distance);
+      }
+      EXPECT_LT(nearest.clearance.distance, least + 1e-14);
+      worst = std::max(worst, least - nearest.clearance.distance);
+      entering += i == 1 && nearest.clearance.distance < 0.0 ? 1 : 0;
+    }
+  }
+  std::cout << "the search finds up to " << 1e3 * worst << " mm more; " << entering
+            << " segments enter the box\n";
+  EXPECT_LT(worst, 0.002);
+  EXPECT_GT(entering, 200);
 }
 
 }  // namespace

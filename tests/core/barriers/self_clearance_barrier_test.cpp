@@ -56,7 +56,7 @@ config::ServoConfig WithSelfClearance(double clearance) {
   return config;
 }
 
-double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Planes(), BodiesAt(q)); }
+double PlaneClearance(const VecN& q) { return ClearanceOfLinks(Planes().obstacles, 0, BodiesAt(q)); }
 
 // The search tries points on the two axes of each pair, at most 1 mm apart.
 TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
@@ -138,7 +138,7 @@ TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
     ExpectRow(self, q, dq, Gap, worst_self);
     EXPECT_NEAR(self.rows[0].b, 1.5 * std::max(Gap(q) - 0.2, 0.0), 1e-12);
     MotionLimits arm;
-    arm.Add(LinksBarrier(WithPlanes(), PosesAt(q), BodiesAt(q)));
+    arm.Add(LinksBarrier(WithPlanes(), 0, PosesAt(q), BodiesAt(q)));
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
     EXPECT_NEAR(arm.rows[0].b,
                 BarrierSpeed(PlaneClearance(q) - 0.05 - 2.0 * WithPlanes().guard.workspace_margin,
@@ -160,10 +160,10 @@ TEST(SelfClearanceBarrierTest, NoRowWithoutAClearanceLimitOrKnownGeometry) {
   MotionLimits limits;
   const VecN q = test::Ready();
   limits.Add(SelfClearanceBarrier(WithSelfClearance(0.0), PosesAt(q), BodiesAt(q)));
-  limits.Add(LinksBarrier(test::PandaConfig(), PosesAt(q), BodiesAt(q)));
+  EXPECT_EQ(CountLinkRows(test::PandaConfig().guard.obstacles), 0);
   const VecN nowhere = q * std::nan("");
   limits.Add(SelfClearanceBarrier(WithSelfClearance(0.13), PosesAt(nowhere), BodiesAt(nowhere)));
-  limits.Add(LinksBarrier(WithPlanes(), PosesAt(nowhere), BodiesAt(nowhere)));
+  limits.Add(LinksBarrier(WithPlanes(), 0, PosesAt(nowhere), BodiesAt(nowhere)));
   EXPECT_EQ(limits.num_rows, 0);
   model::ArmModel without_pairs = Arm();
   without_pairs.shape.num_pairs = 0;

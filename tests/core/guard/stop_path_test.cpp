@@ -107,7 +107,8 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
       const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, at);
       return std::array{
           barriers::ClearanceOf(config.guard.obstacles, 0, config.guard.hand, at.X_BE).clearance.distance,
-          barriers::ClearanceOfPlanes(config.guard, bodies), barriers::SelfClearance(config.arm, bodies)};
+          barriers::ClearanceOfLinks(config.guard.obstacles, 0, bodies),
+          barriers::SelfClearance(config.arm, bodies)};
     };
     const std::array least{config.guard.workspace_margin,
                            config.guard.link_clearance + config.guard.workspace_margin,

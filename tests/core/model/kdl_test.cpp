@@ -199,7 +199,7 @@ TEST_P(KdlTest, DynamicsAgree) {
 
 // The mixed arm has prismatic joints, skew axes, fixed joints with mass and an axis that is -z.
 INSTANTIATE_TEST_SUITE_P(Arms, KdlTest,
-                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml",
+                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml", "/gantry.toml",
                                          "/../../../../tests/core/model/mixed_arm.urdf"));
 
 }  // namespace

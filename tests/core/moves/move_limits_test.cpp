@@ -49,7 +49,7 @@ TEST_F(MoveLimitsTest, HandStopsBeforePlanesAndBoxes) {
   plane.planes[0] = {model::Vec3::UnitZ(), p.z() - 0.10};
   config::Obstacles box;
   box.num_boxes = 1;
-  box.boxes[0] = {p + model::Vec3(-0.3, -0.3, -0.4), p + model::Vec3(0.3, 0.3, -0.10)};
+  box.boxes[0] = {p + model::Vec3(-0.15, -0.3, -0.4), p + model::Vec3(0.3, 0.3, -0.10)};
   for (const config::Obstacles& obstacles : {plane, box}) {
     config.guard.obstacles = obstacles;
     Start(config, test::Ready());
@@ -70,9 +70,9 @@ TEST_F(MoveLimitsTest, HandStopsBeforePlanesAndBoxes) {
     std::cout << "stops " << 1e3 * (lowest - p.z() + 0.10) << " mm before it, given up after " << ticks
               << " ms\n";
     EXPECT_GT(lowest, p.z() - 0.10 - 1e-3);
-    // Before a plane the last link's capsule, which reaches 34 mm beyond the flange, keeps its clearance too.
-    const double short_of_it = obstacles.num_planes > 0 ? 0.034 + config.guard.link_clearance + 0.01 : 0.01;
-    EXPECT_LT(lowest, p.z() - 0.10 + short_of_it) << "the hand must come close";
+    // The last link's capsule, which reaches 34 mm beyond the flange, keeps its clearance too.
+    EXPECT_LT(lowest, p.z() - 0.10 + 0.034 + config.guard.link_clearance + 0.01)
+        << "the hand must come close";
     EXPECT_NE(limits & hal::Bit(hal::Limit::kObstacle), 0U);
     EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused);
     EXPECT_EQ(record().fault, hal::Fault::kNone);

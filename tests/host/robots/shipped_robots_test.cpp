@@ -13,7 +13,8 @@ namespace fovea::robots {
 namespace {
 
 constexpr const char* kShipped =
-    "; shipped are panda, puma560, slider, ur5e (or give the path of an arm file .toml or of a .urdf)";
+    "; shipped are gantry, panda, puma560, slider, ur5e (or give the path of an arm file .toml or of a "
+    ".urdf)";
 
 std::string Said(const std::string& name) {
   try {
@@ -24,7 +25,7 @@ std::string Said(const std::string& name) {
 }
 
 TEST(ShippedRobotsTest, EveryShippedArmIsFoundByName) {
-  EXPECT_EQ(ShippedRobots(), (std::vector<std::string>{"panda", "puma560", "slider", "ur5e"}));
+  EXPECT_EQ(ShippedRobots(), (std::vector<std::string>{"gantry", "panda", "puma560", "slider", "ur5e"}));
   for (const std::string& name : ShippedRobots()) {
     EXPECT_THAT(Said(name), testing::EndsWith("/robots/" + name + ".toml"));
   }

@@ -143,7 +143,8 @@ TEST_F(CommandLineTest, BrokenUrdfIsRefused) {
   EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"gone.urdf\""}), HasSubstr("gone.urdf"));
   EXPECT_THAT(
       Refusal({"ball", "--set", "arm.model=\"pandaa\""}),
-      HasSubstr("arm.model: unknown arm \"pandaa\"; did you mean panda?; shipped are panda, puma560"));
+      HasSubstr(
+          "arm.model: unknown arm \"pandaa\"; did you mean panda?; shipped are gantry, panda, puma560"));
 }
 
 TEST_F(CommandLineTest, UnwritableOutputFolderIsRefused) {

@@ -88,8 +88,35 @@ TEST_P(BulletArmTest, LinkPosesMatchTheJointsAfterEachStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, BulletArmTest,
-                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml",
+                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml", "/gantry.toml",
                                          "/../../../../tests/core/model/mixed_arm.urdf"));
+
+// The arm falls onto a box under its elbow and stays on it.
+TEST(BulletArmBoxTest, ArmTouchesABoxAndIsHeldByIt) {
+  const SimRobot robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
+  const Eigen::VectorXd q = (Eigen::VectorXd(7) << 0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785).finished();
+  const auto fall = [&](const std::vector<Eigen::AlignedBox3d>& boxes, int& contacts) {
+    BulletArm bullet(robot, {.table = false, .boxes = boxes});
+    bullet.SetState(q, Eigen::VectorXd::Zero(robot.num_dofs));
+    bullet.FindContacts();
+    EXPECT_EQ(bullet.Contacts(), 0);
+    contacts = 0;
+    for (int i = 0; i < 1500; ++i) {
+      bullet.Step(-5.0 * bullet.dq(), 1e-3);
+      contacts += bullet.Contacts();
+    }
+    return bullet.LinkPose(robot.tip).translation().z();
+  };
+  int contacts = 0;
+  const double free = fall({}, contacts);
+  EXPECT_EQ(contacts, 0);
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(0.1, -0.2, 0.0), Eigen::Vector3d(0.9, 0.2, 0.25));
+  const double held = fall({box}, contacts);
+  std::cout << "the flange falls to " << free << " m, on the box to " << held << " m\n";
+  EXPECT_GT(contacts, 100);
+  EXPECT_GT(held, 0.2);
+  EXPECT_LT(free, 0.0);
+}
 
 // A free swing without gravity must keep its energy. The figures show which integrator to use.
 TEST(BulletArmEnergyTest, FreeSwingKeepsItsEnergy) {

@@ -67,7 +67,7 @@ TEST_P(RotorArmTest, AcceleratesAsTheServosModelSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, RotorArmTest,
-                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml",
+                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml", "/gantry.toml",
                                          "/../../../../tests/core/model/mixed_arm.urdf"));
 
 struct Swing {

@@ -18,7 +18,7 @@ TEST(Chain, AgreesWithTheServosModel) {
   double jacobian = 0.0;
   double mass = 0.0;
   double coriolis = 0.0;
-  for (const char* name : {"panda", "ur5e", "puma560"}) {
+  for (const char* name : {"panda", "ur5e", "puma560", "gantry"}) {
     robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + name + ".toml");
     sim::SimRobot links = sim::LoadSimRobot(robot.urdf, robot.base_link, robot.tip_link);
     for (sim::SimLink& link : links.links) {

@@ -51,7 +51,7 @@ TEST_P(LogSceneTest, EveryLinkMatchesItsPhysicsPose) {
   std::cout << GetParam() << ": frames of the log and links of the physics differ by " << worst << " m, 1\n";
   EXPECT_LT(worst, 1e-9);
 }
-INSTANTIATE_TEST_SUITE_P(Arms, LogSceneTest, testing::Values("panda", "ur5e", "puma560"),
+INSTANTIATE_TEST_SUITE_P(Arms, LogSceneTest, testing::Values("panda", "ur5e", "puma560", "gantry"),
                          [](const auto& arm) { return std::string(arm.param); });
 
 // The target's frame includes a plate's orientation, so the plate is not turned a second time. A disc's frame

@@ -125,6 +125,29 @@ TEST(ScenarioTest, ElasticJointsThatCannotBeAreRefused) {
   refuses({"arm.encoder_side=gear"}, "arm.encoder_side");
 }
 
+TEST(ScenarioTest, BoxesThatCannotBeAreRefused) {
+  const auto message = [](const std::vector<std::string>& assignments) -> std::string {
+    try {
+      DescribeRun(LoadScenario("ball", assignments));
+    } catch (const config::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]"}), "");
+  EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.7,0.4]"}),
+            "bench.boxes has 5 entries: six for each box are allowed");
+  EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.5,0.4,0.2]"}),
+            "bench.boxes: each low corner must be below its high corner");
+  EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
+                .find("bench.boxes: box 2 is not allowed: at arm.q_start"),
+            std::string::npos);
+  EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]", "target.motion=pushed"}).find("pushed ball"),
+            std::string::npos);
+  EXPECT_NE(message({"safety.boxes=[-0.1,-0.1,0.2,0.1,0.1,0.5]"}).find("arm.q_start is not allowed"),
+            std::string::npos);
+}
+
 TEST(ScenarioTest, HueFollowsTheTargetsColourUnlessItIsSet) {
   const auto hue = [](const std::vector<std::string>& assignments) {
     return LoadScenario("ball", assignments).vision.config.colour.hue_deg;

@@ -91,8 +91,8 @@ TEST_F(UntrustedScenario, ArmOutsideItsFolderIsRefused) {
                                         HasSubstr("outside " + Own("").string())));
   }
   EXPECT_THAT(SaidOfArm("../robots/panda"), HasSubstr("arm.model: unknown arm \"../robots/panda\""));
-  EXPECT_THAT(SaidOfArm("pandda"),
-              AllOf(HasSubstr("did you mean panda?"), HasSubstr("shipped are panda, puma560, slider, ur5e")));
+  EXPECT_THAT(SaidOfArm("pandda"), AllOf(HasSubstr("did you mean panda?"),
+                                         HasSubstr("shipped are gantry, panda, puma560, slider, ur5e")));
 }
 
 TEST_F(UntrustedScenario, UrdfOutsideItsFolderIsRefused) {

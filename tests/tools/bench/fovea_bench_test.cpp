@@ -195,7 +195,7 @@ TEST(FoveaBench, RefusesUnknownCommandsAndOptions) {
   EXPECT_EQ(Bench({"jitter", "--load", "nix"}).exit_code, 2);
   const test::ProgramResult run = Bench({"tick", "--robot", "nix"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("--robot: unknown arm \"nix\"; shipped are panda, puma560"));
+  EXPECT_THAT(run.err, HasSubstr("--robot: unknown arm \"nix\"; shipped are gantry, panda, puma560"));
 }
 
 }  // namespace

@@ -8,13 +8,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <iostream>
 
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/roll_pitch_yaw.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/tools/fovea/atlas_scene.hpp"
+#include "tools/fovea/atlas/views.hpp"
 
 namespace fovea::atlas {
 namespace {
@@ -120,6 +123,98 @@ TEST_F(AtlasStartsFile, ErrorsNameLineColumnAndWhatIsAllowed) {
   ExpectRefused("[{\"q1\": 0}", "not a JSON array of objects");
   ExpectRefused(heading + "0,0,0,-2,0,1,0,9,0,0,0,0,0\n", "target_x = 9 is not allowed: -5 to 5 m");
   ExpectRefused(heading + "0,0,0,-2,0,1,0,3,0,0.1,0,0,0\n", "no run can begin there: the target's outline");
+}
+
+// Turns, shifts and distances are those of the benchmark, as far as the poses of the file say. Each line can
+// be run.
+TEST(AtlasViews, PairsHaveTheBenchmarksRangesAndCanBeRead) {
+  Scene scene = test::AtlasScene("gantry", "triangle");
+  scene.servo.guard.workspace_radius = 2.5;
+  constexpr int kPairs = 40;
+  std::vector<double> turns;
+  double worst = 0.0;
+  for (int i = 0; i < kPairs; ++i) {
+    const ViewPair pair = DrawViewPair(scene, 7, i);
+    const model::Pose X_CO{config::RollPitchYaw(pair.goal.rpy_deg),
+                           {pair.goal.xyz[0], pair.goal.xyz[1], pair.goal.xyz[2]}};
+    const model::Pose X_SG = pair.X_BC.Inverse() * (pair.X_BO * X_CO.Inverse());  // goal in the start's axes
+    const double turn = model::RotationVector(X_SG.R).norm();
+    worst = std::max({worst, std::fabs(turn - pair.turn), std::fabs(X_SG.p.norm() - pair.shift)});
+    turns.push_back(turn * 180.0 / model::kPi);
+    EXPECT_TRUE(turns.back() > 2.6 && turns.back() < 180.1) << turns.back();
+    EXPECT_TRUE(pair.shift >= 0.013 && pair.shift <= 0.493);
+    EXPECT_TRUE(pair.goal.xyz[2] >= 0.5 && pair.goal.xyz[2] <= 0.9);
+  }
+  std::sort(turns.begin(), turns.end());
+  std::cout << "turns from " << turns.front() << " to " << turns.back() << " deg, median "
+            << turns[kPairs / 2] << "; poses in the file are off by at most " << worst << "\n";
+  EXPECT_LT(worst, 2e-4);
+  EXPECT_LT(turns.front(), 20.0);
+  EXPECT_GT(turns.back(), 150.0);
+  const test::TempFolder folder;
+  const std::filesystem::path file = folder.path() / "views.csv";
+  const std::string text = ViewsAsCsv(scene, 7, 5);
+  EXPECT_EQ(text, ViewsAsCsv(scene, 7, 5));
+  std::ofstream(file) << text;
+  const std::vector<Start> starts = ReadStarts(file, scene);
+  ASSERT_EQ(starts.size(), 5U);
+  for (int i = 0; i < 5; ++i) {
+    const Start& start = starts[static_cast<std::size_t>(i)];
+    const ViewPair pair = DrawViewPair(scene, 7, i);
+    const StartChecks checks(scene);
+    const model::Pose X_BC = checks.At(Eigen::Map<const model::VecN>(start.q.data(), 6)).X_BC;
+    EXPECT_LT((X_BC.p - pair.X_BC.p).norm(), 1e-4);
+    EXPECT_EQ(start.goal->xyz.size(), 3U);
+    EXPECT_EQ(start.run_seed, static_cast<std::uint32_t>(i + 1));
+  }
+}
+
+// No point of the arm's links or of a line of sight is near a box, by sampling both.
+TEST(AtlasBoxes, StartsAreClearOfBoxes) {
+  Scene scene = test::AtlasScene("panda", "square");
+  scene.boxes = {{{0.30, 0.30, 0.0}, {0.42, 0.42, 0.35}}, {{0.25, -0.45, 0.0}, {0.45, -0.33, 0.30}}};
+  config::Obstacles& known = scene.servo.guard.obstacles;
+  known.num_boxes = 1;  // the servo knows a third
+  known.boxes[0] = {{0.60, -0.06, 0.0}, {0.72, 0.06, 0.20}};
+  std::vector<config::Box> boxes = scene.boxes;
+  boxes.push_back(known.boxes[0]);
+  const auto distance = [&](const model::Vec3& p) {
+    double least = HUGE_VAL;
+    for (const config::Box& box : boxes) {
+      least = std::min(least, (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm());
+    }
+    return least;
+  };
+  const Sampler sampler(scene);
+  double links = HUGE_VAL;
+  double sight = HUGE_VAL;
+  double target = HUGE_VAL;
+  std::uint64_t in_the_way = 0;
+  for (int index = 0; index < 30; ++index) {
+    const Start start = sampler.Draw(3, index);
+    in_the_way += start.rejections[static_cast<std::size_t>(Rejection::kThingInTheWay)];
+    const StartPosture posture =
+        sampler.goals().checks().At(Eigen::Map<const model::VecN>(start.q.data(), 7));
+    constexpr int kPoints = 200;
+    for (int k = 0; k <= kPoints; ++k) {
+      const double share = k / double{kPoints};
+      for (auto body = posture.bodies.begin() + 1; body != posture.bodies.end(); ++body) {
+        links = std::min(links, distance(body->p_LA + share * (body->p_LB - body->p_LA)) - body->radius);
+      }
+      const features::TargetOutline outline = scene.servo.feature.Outline();
+      for (int i = 0; i < outline.num_points; ++i) {
+        const model::Vec3 p_BP = start.TargetPose() * outline.p_OP[static_cast<std::size_t>(i)];
+        target = std::min(target, distance(p_BP));
+        sight = std::min(sight, distance(posture.X_BC.p + 0.9 * share * (p_BP - posture.X_BC.p)));
+      }
+    }
+  }
+  std::cout << "30 starts: links " << links << ", lines of sight " << sight << ", corners " << target
+            << " m from a box; " << in_the_way << " draws rejected for a box or thing in the way\n";
+  EXPECT_GE(links, 0.03);
+  EXPECT_GE(sight, 0.0299);
+  EXPECT_GE(target, 0.0299);
+  EXPECT_GT(in_the_way, 0U);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "firmware/core/model/kinematics.hpp"
 #include "tests/support/panda.hpp"
+#include "tools/fovea/atlas/uniform.hpp"
 #include "tools/fovea/contact/plan.hpp"
 
 namespace fovea::contact {
@@ -119,7 +120,7 @@ TEST(ContactPlanTest, DrawsStayWithinTheirRanges) {
   double least = 1.0;
   double most = 0.0;
   for (int k = 0; k < 1000; ++k) {
-    const double drawn = Uniform(random, 0.0, 1.0);
+    const double drawn = atlas::Uniform(random, 0.0, 1.0);
     least = std::min(least, drawn);
     most = std::max(most, drawn);
     EXPECT_NEAR(DrawPush(random, Place::kHand, Motions().front()).direction_B.norm(), 1.0, 1e-12);

@@ -59,7 +59,7 @@ TEST(FoveaModel, DefaultStateIsTheReadyPostureAtRest) {
 }
 
 TEST(FoveaModel, RefusesUnknownArmsAndBadNumbers) {
-  EXPECT_THAT(Model({"nix"}).err, HasSubstr("unknown arm \"nix\"; shipped are panda, puma560"));
+  EXPECT_THAT(Model({"nix"}).err, HasSubstr("unknown arm \"nix\"; shipped are gantry, panda, puma560"));
   EXPECT_THAT(Model({"pandda"}).err, HasSubstr("unknown arm \"pandda\"; did you mean panda?"));
   EXPECT_EQ(Model({"nix"}).exit_code, 2);
   EXPECT_THAT(Model({"panda", "--at", "1,2"}).err, HasSubstr("--at has 2 numbers: 7, 14 or 21 are allowed"));

@@ -21,6 +21,7 @@
 #include "tools/fovea/atlas/progress.hpp"
 #include "tools/fovea/atlas/seed.hpp"
 #include "tools/fovea/atlas/starts_file.hpp"
+#include "tools/fovea/atlas/views.hpp"
 #include "tools/fovea/robustness/robustness.hpp"
 
 namespace fovea {
@@ -72,6 +73,15 @@ int DrawOnly(const AtlasArguments& arguments) {
   }
   fmt::print("{}", arguments.json ? atlas::DrawsAsJson(figures)
                                   : atlas::DrawsAsTable(figures, config::StyleOf(STDOUT_FILENO)));
+  return config::kDone;
+}
+
+int MakeViews(const AtlasArguments& arguments) {
+  const atlas::Heading heading = HeadingOf(arguments, arguments.target, {});
+  const atlas::Scene scene = atlas::LoadScene(arguments.target, atlas::SceneAssignments(heading.assignments));
+  const int pairs = RunsOf(arguments);
+  atlas::WriteFile(arguments.views, atlas::ViewsAsCsv(scene, heading.seed, pairs));
+  fmt::print("{}: {} pairs of views\n", arguments.views, pairs);
   return config::kDone;
 }
 
@@ -204,25 +214,30 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
                     "out/atlas-robustness, out/atlas-contact, out/atlas-findings or "
                     "out/atlas-laws");
   atlas->add_flag("--resume", arguments.resume, "keep the finished runs in the folder, do the rest");
-  atlas
-      ->add_flag("--draw-only", arguments.draw_only,
-                 "draw the starts without running them; print how many are rejected, and why")
-      ->excludes(faults)
-      ->excludes(robust)
-      ->excludes(contact)
-      ->excludes(findings)
-      ->excludes(laws)
-      ->excludes(atlas->get_option("--truth"))
-      ->excludes(atlas->get_option("--truth-size"))
-      ->excludes(atlas->get_option("--tornado"))
-      ->excludes(atlas->get_option("--margin"));
+  CLI::Option* draw_only =
+      atlas->add_flag("--draw-only", arguments.draw_only,
+                      "draw the starts without running them; print how many are rejected, and why");
+  CLI::Option* views =
+      atlas
+          ->add_option(
+              "--make-views", arguments.views,
+              "run nothing, but write random starts to this file, for --starts: pairs of camera poses, in "
+              "the ranges of a public benchmark")
+          ->excludes(draw_only);
+  for (CLI::Option* without_runs : {draw_only, views}) {
+    without_runs->needs(target);
+    for (const char* option : {"--truth", "--truth-size", "--tornado", "--margin"}) {
+      without_runs->excludes(atlas->get_option(option));
+    }
+  }
   CLI::Option* starts =
       atlas
           ->add_option("--starts", arguments.starts,
                        "file of starts, CSV or JSON, instead of random ones: q1, q2, ... or camera_x, ..., "
                        "camera_yaw; target_x, ..., target_yaw; goal_x, ..., goal_yaw; seed")
           ->needs(target);
-  for (const char* option : {"--runs", "--truth-size", "--tornado", "--margin", "--draw-only"}) {
+  for (const char* option :
+       {"--runs", "--truth-size", "--tornado", "--margin", "--draw-only", "--make-views"}) {
     starts->excludes(atlas->get_option(option));
   }
   CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
@@ -251,6 +266,9 @@ int Atlas(const AtlasArguments& arguments) {
   CheckAssignments(arguments.assignments);
   if (arguments.draw_only) {
     return DrawOnly(arguments);
+  }
+  if (!arguments.views.empty()) {
+    return MakeViews(arguments);
   }
   if (arguments.robustness || arguments.tornado || arguments.margin || !arguments.sizes.empty()) {
     return RobustnessAtlas(arguments);

@@ -37,6 +37,7 @@ struct AtlasArguments {
   std::string out;
   bool resume = false;
   bool draw_only = false;
+  std::string views;  // file to write; "": none
   bool json = false;
 };
 

@@ -65,7 +65,38 @@ double DistanceToBox(const Vec3& p, const config::Box& box) {
   return (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm();
 }
 
+// Whether the segment is nearer to one of the boxes than `bound`. Its distance is convex along the segment,
+// so thirds without the minimum are cut off until a point is near enough, or what is left is short.
+bool IsNearABox(const std::vector<config::Box>& boxes, const Vec3& a, const Vec3& b, double bound) {
+  constexpr double kShort = 1e-4;  // [m]
+  const auto is_near = [&](const config::Box& box) {
+    const double length = (b - a).norm();
+    if (DistanceToBox(0.5 * (a + b), box) - 0.5 * length >= bound) {
+      return false;
+    }
+    double from = 0.0;
+    double to = 1.0;
+    do {
+      const double one = from + (to - from) / 3.0;
+      const double other = to - (to - from) / 3.0;
+      const double at_one = DistanceToBox(a + one * (b - a), box);
+      const double at_other = DistanceToBox(a + other * (b - a), box);
+      if (std::min(at_one, at_other) < bound) {
+        return true;
+      }
+      (at_one < at_other ? to : from) = at_one < at_other ? other : one;
+    } while ((to - from) * length > kShort);
+    return false;
+  };
+  return std::any_of(boxes.begin(), boxes.end(), is_near);
+}
+
 }  // namespace
+
+StartChecks::StartChecks(const Scene& scene) : scene_(scene), boxes_(scene.boxes) {
+  const config::Obstacles& known = scene.servo.guard.obstacles;
+  boxes_.insert(boxes_.end(), known.boxes.begin(), known.boxes.begin() + known.num_boxes);
+}
 
 const StartChecks::Clear StartChecks::kAtEnds{0.02, 0.04, 0.02, 0.02, 0.03};
 const StartChecks::Clear StartChecks::kOnTheWay{0.0, 0.03, 0.0, 0.0, 0.01};
@@ -102,12 +133,8 @@ bool StartChecks::ClearOfSolids(const StartPosture& posture, const Clear& clear)
         return false;
       }
     }
-    for (int i = 0; i < solids.num_boxes; ++i) {
-      if (DistanceToBox(p_B, solids.boxes[static_cast<std::size_t>(i)]) < least) {
-        return false;
-      }
-    }
-    return true;
+    return std::none_of(boxes_.begin(), boxes_.end(),
+                        [&](const config::Box& box) { return DistanceToBox(p_B, box) < least; });
   };
   for (int i = 0; i < guard.hand.num_balls; ++i) {
     const auto& ball = guard.hand.balls[static_cast<std::size_t>(i)];
@@ -125,6 +152,11 @@ bool StartChecks::ClearOfSolids(const StartPosture& posture, const Clear& clear)
       if (nearest - plane.distance - body->radius < least) {
         return false;
       }
+    }
+  }
+  for (auto body = posture.bodies.begin() + 1; body != posture.bodies.end(); ++body) {
+    if (IsNearABox(boxes_, body->p_LA, body->p_LB, body->radius + least)) {
+      return false;
     }
   }
   return hand_is_clear(posture.poses.X_BE.p, kHandRadius) && hand_is_clear(posture.X_BC.p, kHandRadius);
@@ -199,11 +231,16 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, con
   return false;
 }
 
-bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO) const {
+// The servo lets a box be near the last tenth of a line of sight.
+bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO, const Clear& clear) const {
+  constexpr double kShare = 0.9;
   const features::TargetOutline outline = scene_.servo.feature.Outline();
   for (int k = 0; k < outline.num_points; ++k) {
     const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
-    if (ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius)) {
+    const Vec3 p_before = posture.X_BC.p + kShare * (p_BP - posture.X_BC.p);
+    if (ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius) ||
+        IsNearABox(boxes_, posture.X_BC.p, p_before, scene_.servo.guard.sight_clearance + clear.sight) ||
+        IsNearABox(boxes_, p_BP, p_BP, outline.radius + clear.target)) {
       return true;
     }
   }
@@ -218,6 +255,10 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO) con
   return ArmInTheWay(posture, X_BO, kAtEnds);
 }
 
+bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO) const {
+  return BenchInTheWay(posture, X_BO, kAtEnds);
+}
+
 bool StartChecks::StandsAtGoal(const StartPosture& posture, const Pose& X_BO) const {
   return InsideBarrier(posture) && ClearOfSolids(posture) && !ArmInTheWay(posture, X_BO) &&
          !BenchInTheWay(posture, X_BO);
@@ -229,7 +270,7 @@ bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO) const 
       !scene_.servo.feature.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
   return X_CO.p.z() > kDepthOnTheWay && faces && !OutOfViewOnTheWay(X_CO) && InsideBarrier(posture) &&
          ClearOfSolids(posture, kOnTheWay) && !ArmInTheWay(posture, X_BO, kOnTheWay) &&
-         !BenchInTheWay(posture, X_BO);
+         !BenchInTheWay(posture, X_BO, kOnTheWay);
 }
 
 bool StartChecks::OutOfViewOnTheWay(const Pose& X_CO) const {

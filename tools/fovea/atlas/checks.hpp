@@ -19,19 +19,19 @@ struct StartPosture {
 
 class StartChecks {
  public:
-  explicit StartChecks(const Scene& scene) : scene_(scene) {}
+  explicit StartChecks(const Scene& scene);
 
   [[nodiscard]] StartPosture At(const model::VecN& q) const;
   // True when the hand is inside the workspace.
   [[nodiscard]] bool InsideBarrier(const StartPosture& posture) const;
-  // True when links, hand and camera are clear of the planes, and hand and camera of the boxes.
+  // True when links, hand and camera are clear of planes and boxes.
   [[nodiscard]] bool ClearOfSolids(const StartPosture& posture) const;
   // True when the target's outline is completely 30 px inside the picture; when it is above the table.
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
   // True when the arm is too close to itself, to the target or to a line of sight.
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
-  // True when a thing on the bench is in the target or in a line of sight.
+  // True when a thing or a box on the bench is in the target or in a line of sight.
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when a posture that reaches the goal meets all these conditions.
   [[nodiscard]] bool StandsAtGoal(const StartPosture& posture, const model::Pose& X_BO) const;
@@ -47,11 +47,11 @@ class StartChecks {
  private:
   // What the arm must keep beyond the servo's own bounds [m].
   struct Clear {
-    double links;   // from planes
+    double links;   // from planes and boxes
     double hand;    // from planes and boxes
-    double sight;   // links from lines of sight
+    double sight;   // links and boxes from lines of sight
     double itself;  // links from each other
-    double target;  // whole arm from the target
+    double target;  // whole arm and boxes from the target
   };
   static const Clear kAtEnds;
   static const Clear kOnTheWay;
@@ -59,8 +59,11 @@ class StartChecks {
   [[nodiscard]] bool ClearOfSolids(const StartPosture& posture, const Clear& clear) const;
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO,
                                  const Clear& clear) const;
+  [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO,
+                                   const Clear& clear) const;
 
   Scene scene_;
+  std::vector<config::Box> boxes_;  // on the bench, and those that the servo avoids
 };
 
 }  // namespace fovea::atlas

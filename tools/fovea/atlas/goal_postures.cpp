@@ -31,10 +31,6 @@ Vec6 OffOf(const Pose& X_CO, const Pose& X_CO_star) {
 
 }  // namespace
 
-double Uniform(std::mt19937_64& engine, double low, double high) {
-  return low + (high - low) * static_cast<double>(engine() >> 11U) * 0x1p-53;
-}
-
 GoalPostures::GoalPostures(const Scene& scene) : checks_(scene) {
   const model::ArmModel& arm = scene.servo.arm;
   q_least_.resize(arm.num_joints);

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "tools/fovea/atlas/checks.hpp"
+#include "tools/fovea/atlas/uniform.hpp"
 
 namespace fovea::atlas {
-
-// A number in [low, high), the same on all machines.
-[[nodiscard]] double Uniform(std::mt19937_64& engine, double low, double high);
 
 class GoalPostures {
  public:

@@ -33,11 +33,12 @@ inline constexpr std::array<const char*, 7> kRejectionNames{
 // Descriptions for people, in the same order.
 inline constexpr std::array<const char*, kRejectionNames.size()> kRejectionWords{
     "hand outside the workspace, or less than 3 mm inside the servo's bound",
-    "links less than 2 cm, hand or camera less than 4 cm farther from the table than the servo keeps them",
+    "links less than 2 cm, hand or camera less than 4 cm farther from table and boxes than the servo keeps "
+    "them",
     "the target's outline is not completely 30 px inside the picture",
     "the target intersects the table",
     "the arm is too near to itself, the target or the line of sight",
-    "an object on the bench intersects the target or the line of sight",
+    "an object or a box on the bench is in or near the target or a line of sight",
     "no posture found that reaches the goal and meets all these conditions"};
 using Rejections = std::array<std::uint64_t, kRejectionNames.size()>;
 

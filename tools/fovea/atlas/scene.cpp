@@ -82,9 +82,12 @@ Scene LoadScene(const std::string& target, const std::vector<std::string>& assig
   config::AddTargetKeys(target_settings, keys);
   AddCameraKeys(camera, hfov_deg, keys);
   keys.Text("arm.model", arm, "");
+  std::vector<double> boxes;
+  keys.Numbers("bench.boxes", boxes, 0, 1000, -1e6, 1e6, "m", "");
   keys.ApplyRecorded(ValuesOf(ScenarioOf(target), assignments));
   Scene scene;
   scene.camera = CameraOf(camera.intrinsics, hfov_deg);
+  scene.boxes = config::MakeBoxes("bench.boxes", boxes);
   const robots::Robot robot = robots::LoadRobot(robots::FindRobot(arm, "arm.model"));
   scene.servo = config::MakeServoConfig(servo, {robot.name, robot.model, {}}, config::MakeMount(camera),
                                         scene.camera, target_settings);

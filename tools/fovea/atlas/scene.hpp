@@ -16,6 +16,7 @@ namespace fovea::atlas {
 struct Scene {
   config::ServoConfig servo;  // as the simulator's servo has it
   vision::Intrinsics camera;
+  std::vector<config::Box> boxes;  // on the bench, known to the servo or not
 };
 
 // Where the target has to be in the camera.

@@ -5,6 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "tools/fovea/atlas/uniform.hpp"
+
 namespace fovea::atlas {
 namespace {
 
@@ -29,8 +31,6 @@ std::size_t NearestOf(const Tree& tree, const VecN& q) {
   }
   return nearest;
 }
-
-double Uniform(std::mt19937_64& engine) { return static_cast<double>(engine() >> 11U) * 0x1p-53; }
 
 enum class Step : std::uint8_t { kThere, kNearer, kBarred };
 
@@ -95,7 +95,7 @@ void Shorten(const WayProblem& problem, std::mt19937_64& engine, Path& path) {
   constexpr int kShortcuts = 300;
   for (int k = 0; k < kShortcuts && path.size() > 2; ++k) {
     const auto pick = [&] {
-      return static_cast<std::size_t>(Uniform(engine) * static_cast<double>(path.size()));
+      return static_cast<std::size_t>(Uniform(engine, 0.0, 1.0) * static_cast<double>(path.size()));
     };
     const auto [first, last] = std::minmax({pick(), pick()});
     if (last - first < 2) {
@@ -155,7 +155,7 @@ WayResult FindWay(const WayProblem& problem, const VecN& start, const std::vecto
     std::swap(grows, follows);
     aim = problem.least;
     for (double& joint : aim) {
-      joint = Uniform(engine);
+      joint = Uniform(engine, 0.0, 1.0);
     }
     aim = problem.least + aim.cwiseProduct(problem.most - problem.least);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "firmware/core/model/kinematics.hpp"
+#include "tools/fovea/atlas/uniform.hpp"
 
 namespace fovea::contact {
 namespace {
@@ -35,20 +36,15 @@ std::span<const Motion> Motions() {
 
 const char* Name(Place place) { return place == Place::kHand ? "hand" : "elbow"; }
 
-double Uniform(std::mt19937_64& random, double low, double high) {
-  constexpr double kPerBit = 1.0 / static_cast<double>(std::uint64_t{1} << 53U);
-  return low + (high - low) * kPerBit * static_cast<double>(random() >> 11U);
-}
-
 std::vector<std::string> WrongBeliefs(std::mt19937_64& random, int draw, int num_joints) {
   std::vector<double> masses;
   for (int i = 0; i < num_joints; ++i) {
-    const double drawn = Uniform(random, 1.0 - kMassError, 1.0 + kMassError);
+    const double drawn = atlas::Uniform(random, 1.0 - kMassError, 1.0 + kMassError);
     masses.push_back(draw == 0 ? 1.0 + kMassError : draw == 1 ? 1.0 - kMassError : drawn);
   }
-  const double load = Uniform(random, -kLoadLess, kLoadMore);
-  const double viscous = Uniform(random, 1.0 - kFrictionError, 1.0 + kFrictionError);
-  const double coulomb = Uniform(random, 1.0 - kFrictionError, 1.0 + kFrictionError);
+  const double load = atlas::Uniform(random, -kLoadLess, kLoadMore);
+  const double viscous = atlas::Uniform(random, 1.0 - kFrictionError, 1.0 + kFrictionError);
+  const double coulomb = atlas::Uniform(random, 1.0 - kFrictionError, 1.0 + kFrictionError);
   return {fmt::format("truth.arm.link_mass.scale=[{:.4f}]", fmt::join(masses, ", ")),
           fmt::format("truth.arm.load_mass.offset={:.4f}", load),
           fmt::format("truth.arm.viscous.scale={:.4f}", viscous),
@@ -59,11 +55,11 @@ Push DrawPush(std::mt19937_64& random, Place place, const Motion& motion) {
   Push push;
   push.place = place;
   // Uniform on the sphere: the height is uniform, and so is the angle about it.
-  const double z = Uniform(random, -1.0, 1.0);
-  const double angle = Uniform(random, -M_PI, M_PI);
+  const double z = atlas::Uniform(random, -1.0, 1.0);
+  const double angle = atlas::Uniform(random, -M_PI, M_PI);
   const double across = std::sqrt(1.0 - z * z);
   push.direction_B = {across * std::cos(angle), across * std::sin(angle), z};
-  push.from_s = std::round(1e3 * Uniform(random, motion.pushed_s[0], motion.pushed_s[1])) * 1e-3;
+  push.from_s = std::round(1e3 * atlas::Uniform(random, motion.pushed_s[0], motion.pushed_s[1])) * 1e-3;
   return push;
 }
 

@@ -30,9 +30,6 @@ enum class Place : std::uint8_t { kHand, kElbow };
 inline constexpr std::array kPlaces{Place::kHand, Place::kElbow};
 const char* Name(Place place);
 
-// A uniform random number from `low` to `high`, the same with every standard library.
-double Uniform(std::mt19937_64& random, double low, double high);
-
 // What is not as the servo believes, as assignments of [truth]: each link's mass by up to 20 %, the load by
 // -0.2 to +0.3 kg, friction by half. `draw` 0 and 1: all masses are 20 % larger, 20 % smaller.
 std::vector<std::string> WrongBeliefs(std::mt19937_64& random, int draw, int num_joints);
