@@ -23,8 +23,8 @@ constexpr double kReboundLeft =
 double Distance(const config::Plane& plane, const Eigen::Vector3d& p) {
   return plane.normal.dot(p) - plane.distance;
 }
-double Distance(const config::Box& box, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d off = (box.low - p).cwiseMax(p - box.high);  // beyond each pair of faces
+double Distance(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d off = (box.min() - p).cwiseMax(p - box.max());  // beyond each pair of faces
   const double outside = off.cwiseMax(0.0).norm();
   return outside > 0.0 ? outside : off.maxCoeff();
 }
@@ -124,7 +124,8 @@ void AddHand(const BarrierConfig& config, std::vector<TruthBarrier>& list) {
     keep_out("planes", i, obstacles.planes[static_cast<std::size_t>(i)]);
   }
   for (int i = 0; i < obstacles.num_boxes; ++i) {
-    keep_out("boxes", i, obstacles.boxes[static_cast<std::size_t>(i)]);
+    const config::Box& box = obstacles.boxes[static_cast<std::size_t>(i)];
+    keep_out("boxes", i, Eigen::AlignedBox3d(box.low, box.high));
   }
   for (std::size_t i = 0; i < config.boxes.size(); ++i) {
     keep_out("bench.boxes", static_cast<int>(i), config.boxes[i]);

@@ -20,12 +20,12 @@ namespace fovea::sim {
 
 struct BarrierConfig {
   model::ArmModel arm;
-  double workspace_radius = 0.85;  // [m]
-  double cartesian_speed = 1.7;    // of the hand [m/s]
-  double rotation_speed = 2.5;     // of the hand [rad/s]
-  config::Obstacles obstacles;     // that the hand must avoid
-  config::HandShape hand;          // camera and tools that move with the hand
-  std::vector<config::Box> boxes;  // that truly stand on the bench
+  double workspace_radius = 0.85;          // [m]
+  double cartesian_speed = 1.7;            // of the hand [m/s]
+  double rotation_speed = 2.5;             // of the hand [rad/s]
+  config::Obstacles obstacles;             // that the hand must avoid
+  config::HandShape hand;                  // camera and tools that move with the hand
+  std::vector<Eigen::AlignedBox3d> boxes;  // that truly stand on the bench
 };
 
 // One step of the physics, input of the barriers.

@@ -55,6 +55,16 @@ class VerdictBarriersTest : public testing::Test {
   BarrierConfig config_;
 };
 
+// A box on the bench counts, whether the servo knows it or not.
+TEST_F(VerdictBarriersTest, TrueBoxesCount) {
+  config_.boxes = {{Eigen::Vector3d(0.25, -0.1, 0.4), Eigen::Vector3d(0.35, 0.1, 0.47)},
+                   {Eigen::Vector3d(0.25, -0.1, 0.4), Eigen::Vector3d(0.35, 0.1, 0.51)}};
+  const Summary s = Judge([](std::int64_t /*k*/, Truth& /*truth*/) {});
+  EXPECT_NEAR(s.clearances_m.at("hand.bench.boxes[0]"), 0.03, 1e-12);
+  EXPECT_NEAR(s.clearances_m.at("hand.bench.boxes[1]"), -0.01, 1e-12);
+  EXPECT_EQ(s.violations.at("hand.bench.boxes[1]"), 101U);
+}
+
 TEST_F(VerdictBarriersTest, ArmClearOfAllBarriersViolatesNone) {
   const Summary s = Judge([](auto, Truth&) {});
   EXPECT_EQ(s.limit_violations, 0U);
