@@ -35,8 +35,8 @@ NearSight NearestOf(const Sight& sight) noexcept {
       }
     }
     for (int i = 0; i < sight.obstacles.num_boxes; ++i) {
-      const SegmentClearance box = ClearanceOf(sight.obstacles, sight.obstacles.num_planes + i, sight.X_BC.p,
-                                               sight.X_BC.p + kShare * (p_BP - sight.X_BC.p));
+      const SegmentClearance box = ClearanceOf(sight.obstacles.boxes[static_cast<std::size_t>(i)],
+                                               sight.X_BC.p, sight.X_BC.p + kShare * (p_BP - sight.X_BC.p));
       if (box.clearance.distance < nearest.gap) {
         nearest = {box.clearance.distance, kShare * box.s, box.clearance.away, Vec3::Zero(), 0};
       }

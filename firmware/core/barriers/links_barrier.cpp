@@ -19,22 +19,57 @@ struct NearestLink {
   int body = -1;
 };
 
-NearestLink NearestOf(const config::Obstacles& obstacles, int i, const ArmBodies& bodies) noexcept {
-  const bool planes = i == 0 && obstacles.num_planes > 0;
-  const int first = planes ? 0 : obstacles.num_planes + i - (obstacles.num_planes > 0 ? 1 : 0);
-  const int end = planes ? obstacles.num_planes : first + 1;
+NearestLink NearestOfPlanes(const config::Obstacles& obstacles, const ArmBodies& bodies) noexcept {
   NearestLink nearest;
-  for (int k = planes ? std::max(bodies.size - kOuterLinks, 1) : 1; k < bodies.size; ++k) {
+  for (int k = std::max(bodies.size - kOuterLinks, 1); k < bodies.size; ++k) {
     const PlacedCapsule& body = bodies.body[static_cast<std::size_t>(k)];
-    for (int obstacle = first; obstacle < end; ++obstacle) {
-      SegmentClearance axis = ClearanceOf(obstacles, obstacle, body.p_BA, body.p_BB);
-      axis.clearance.distance -= body.radius;
-      if (axis.clearance.distance < nearest.clearance.distance) {
-        nearest = {axis.clearance, axis.p_B, k};
+    for (int i = 0; i < obstacles.num_planes; ++i) {
+      const config::Plane& plane = obstacles.planes[static_cast<std::size_t>(i)];
+      for (const Vec3& end : {body.p_BA, body.p_BB}) {
+        const double distance = plane.normal.dot(end) - plane.distance - body.radius;
+        if (distance < nearest.clearance.distance) {
+          nearest = {{distance, plane.normal}, end, k};
+        }
       }
     }
   }
   return nearest;
+}
+
+// Whether the capsule may be nearer to the box than `distance`, by the ball about it.
+bool MayBeNearer(const config::Box& box, const PlacedCapsule& body, double distance) noexcept {
+  double away2 = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double p = body.middle[i];
+    const double away = p > box.high[i] ? p - box.high[i] : p < box.low[i] ? box.low[i] - p : 0.0;
+    away2 += away * away;
+  }
+  const double bound = distance + body.reach;
+  return bound > 0.0 && away2 < bound * bound;
+}
+
+// The outer links, which usually are the nearest, come first.
+NearestLink NearestOfBox(const config::Box& box, const ArmBodies& bodies) noexcept {
+  NearestLink nearest;
+  for (int k = bodies.size - 1; k >= 1; --k) {
+    const PlacedCapsule& body = bodies.body[static_cast<std::size_t>(k)];
+    if (!MayBeNearer(box, body, nearest.clearance.distance)) {
+      continue;
+    }
+    SegmentClearance axis = ClearanceOf(box, body.p_BA, body.p_BB);
+    axis.clearance.distance -= body.radius;
+    if (axis.clearance.distance < nearest.clearance.distance) {
+      nearest = {axis.clearance, axis.p_B, k};
+    }
+  }
+  return nearest;
+}
+
+// Of row `i`.
+NearestLink NearestOf(const config::Obstacles& obstacles, int i, const ArmBodies& bodies) noexcept {
+  const int box = obstacles.num_planes > 0 ? i - 1 : i;
+  return box < 0 ? NearestOfPlanes(obstacles, bodies)
+                 : NearestOfBox(obstacles.boxes[static_cast<std::size_t>(box)], bodies);
 }
 
 }  // namespace

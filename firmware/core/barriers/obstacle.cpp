@@ -38,6 +38,24 @@ Clearance ClearanceOf(const config::Box& box, const model::Vec3& p) noexcept {
   return clearance;
 }
 
+// The hand's point nearest to what `clearance_of` measures. One loop for each kind of obstacle: the tick asks
+// often.
+template <class ClearanceAt>
+HandClearance NearestOfHand(const config::HandShape& hand, const model::Pose& X_BE,
+                            const ClearanceAt& clearance_of) noexcept {
+  HandClearance nearest{clearance_of(X_BE.p), X_BE.p};
+  for (int k = 0; k < hand.num_balls; ++k) {
+    const config::HandShape::Ball& ball = hand.balls[static_cast<std::size_t>(k)];
+    const model::Vec3 p_BP = X_BE * ball.p_EP;
+    Clearance clearance = clearance_of(p_BP);
+    clearance.distance -= ball.radius;
+    if (clearance.distance < nearest.clearance.distance) {
+      nearest = {clearance, p_BP};
+    }
+  }
+  return nearest;
+}
+
 // Half the derivative, by t, of the squared distance from a + t d to the box.
 double HalfSlope(const config::Box& box, const model::Vec3& a, const model::Vec3& d, double t) noexcept {
   double slope = 0.0;
@@ -147,28 +165,18 @@ Clearance ClearanceOf(const config::Obstacles& obstacles, int i, const model::Ve
 
 HandClearance ClearanceOf(const config::Obstacles& obstacles, int i, const config::HandShape& hand,
                           const model::Pose& X_BE) noexcept {
-  HandClearance nearest{ClearanceOf(obstacles, i, X_BE.p), X_BE.p};
-  for (int k = 0; k < hand.num_balls; ++k) {
-    const config::HandShape::Ball& ball = hand.balls[static_cast<std::size_t>(k)];
-    const model::Vec3 p_BP = X_BE * ball.p_EP;
-    Clearance clearance = ClearanceOf(obstacles, i, p_BP);
-    clearance.distance -= ball.radius;
-    if (clearance.distance < nearest.clearance.distance) {
-      nearest = {clearance, p_BP};
-    }
-  }
-  return nearest;
-}
-
-SegmentClearance ClearanceOf(const config::Obstacles& obstacles, int i, const model::Vec3& a_B,
-                             const model::Vec3& b_B) noexcept {
   if (i < obstacles.num_planes) {
-    const Clearance first = ClearanceOf(obstacles, i, a_B);
-    const Clearance second = ClearanceOf(obstacles, i, b_B);
-    return second.distance < first.distance ? SegmentClearance{second, b_B, 1.0}
-                                            : SegmentClearance{first, a_B, 0.0};
+    const config::Plane& plane = obstacles.planes[static_cast<std::size_t>(i)];
+    return NearestOfHand(hand, X_BE, [&](const model::Vec3& p) {
+      return Clearance{plane.normal.dot(p) - plane.distance, plane.normal};
+    });
   }
   const config::Box& box = obstacles.boxes[static_cast<std::size_t>(i - obstacles.num_planes)];
+  return NearestOfHand(hand, X_BE, [&](const model::Vec3& p) { return ClearanceOf(box, p); });
+}
+
+SegmentClearance ClearanceOf(const config::Box& box, const model::Vec3& a_B,
+                             const model::Vec3& b_B) noexcept {
   const double s = NearestPlace(box, a_B, b_B - a_B);
   const model::Vec3 p_B = a_B + s * (b_B - a_B);
   return {ClearanceOf(box, p_B), p_B, s};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance of points and segments from planes and boxes, and the direction away from them.
+// The distance of points from planes and boxes, of segments from boxes, and the direction away from them.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -24,15 +24,15 @@ struct HandClearance {
 [[nodiscard]] HandClearance ClearanceOf(const config::Obstacles& obstacles, int i,
                                         const config::HandShape& hand, const model::Pose& X_BE) noexcept;
 
-// The place of a segment that is nearest to plane or box `i`.
+// The place of a segment that is nearest to a box.
 struct SegmentClearance {
   Clearance clearance;
   model::Vec3 p_B = model::Vec3::Zero();  // in B [m]
   double s = 0.0;                         // as a share of the segment's length from its first end
 };
-// Of the segment from `a_B` to `b_B` [m]; length 0 is allowed. Of a segment that enters a box, the deepest
+// Of the segment from `a_B` to `b_B` [m]; length 0 is allowed. Of a segment that enters the box, the deepest
 // place; `away` then points to one of the nearest faces. Real-time: yes.
-[[nodiscard]] SegmentClearance ClearanceOf(const config::Obstacles& obstacles, int i, const model::Vec3& a_B,
+[[nodiscard]] SegmentClearance ClearanceOf(const config::Box& box, const model::Vec3& a_B,
                                            const model::Vec3& b_B) noexcept;
 
 [[nodiscard]] inline int CountObstacles(const config::Obstacles& obstacles) noexcept {

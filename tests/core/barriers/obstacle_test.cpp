@@ -53,8 +53,6 @@ TEST(ObstacleTest, BoxDistanceIsThatOfItsNearestPoint) {
 // Every third segment runs along an axis, every seventh is a point.
 TEST(ObstacleTest, SegmentClearanceIsTheSmallestFoundByASearch) {
   config::Obstacles obstacles;
-  obstacles.num_planes = 1;
-  obstacles.planes[0] = {model::Vec3(0.0, 0.6, 0.8), 0.2};
   obstacles.num_boxes = 1;
   obstacles.boxes[0] = {{-0.1, -0.2, 0.0}, {0.3, 0.1, 0.5}};
   std::mt19937_64 random(2);
@@ -66,19 +64,17 @@ TEST(ObstacleTest, SegmentClearanceIsTheSmallestFoundByASearch) {
     const model::Vec3 a(uniform(random), uniform(random), uniform(random));
     model::Vec3 b(uniform(random), uniform(random), uniform(random));
     b = n % 7 == 0 ? a : n % 3 == 0 ? model::Vec3(a + b.x() * model::Vec3::Unit(n % 9 / 3)) : b;
-    for (int i = 0; i < 2; ++i) {
-      const SegmentClearance nearest = ClearanceOf(obstacles, i, a, b);
-      ASSERT_TRUE(nearest.s >= 0.0 && nearest.s <= 1.0);
-      EXPECT_LT((a + nearest.s * (b - a) - nearest.p_B).norm(), 1e-15);
-      EXPECT_EQ(ClearanceOf(obstacles, i, nearest.p_B).distance, nearest.clearance.distance);
-      double least = HUGE_VAL;
-      for (int k = 0; k <= kPoints; ++k) {
-        least = std::min(least, ClearanceOf(obstacles, i, a + k / double{kPoints} * (b - a)).distance);
-      }
-      EXPECT_LT(nearest.clearance.distance, least + 1e-14);
-      worst = std::max(worst, least - nearest.clearance.distance);
-      entering += i == 1 && nearest.clearance.distance < 0.0 ? 1 : 0;
+    const SegmentClearance nearest = ClearanceOf(obstacles.boxes[0], a, b);
+    ASSERT_TRUE(nearest.s >= 0.0 && nearest.s <= 1.0);
+    EXPECT_LT((a + nearest.s * (b - a) - nearest.p_B).norm(), 1e-15);
+    EXPECT_EQ(ClearanceOf(obstacles, 0, nearest.p_B).distance, nearest.clearance.distance);
+    double least = HUGE_VAL;
+    for (int k = 0; k <= kPoints; ++k) {
+      least = std::min(least, ClearanceOf(obstacles, 0, a + k / double{kPoints} * (b - a)).distance);
     }
+    EXPECT_LT(nearest.clearance.distance, least + 1e-14);
+    worst = std::max(worst, least - nearest.clearance.distance);
+    entering += nearest.clearance.distance < 0.0 ? 1 : 0;
   }
   std::cout << "the search finds up to " << 1e3 * worst << " mm more; " << entering
             << " segments enter the box\n";

@@ -224,7 +224,7 @@ TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
 
 TEST_F(CommandLineTest, ListAndKeysShowScenariosAndKeys) {
   const std::string list = Sim({"list"}).out;
-  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 26) << "a pipe gets one line for each scenario";
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 28) << "a pipe gets one line for each scenario";
   EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
                           HasSubstr("ball-clutter "), HasSubstr("circle "), HasSubstr("flange-circle "),
                           HasSubstr("theory/open-loop ")));
