@@ -37,10 +37,10 @@ TEST(Hold, UnreachableBallEndsInHoldWithAReason) {
   RestWatch watch;
   // The ball is visible from the start. To be 1.15 m away from it the arm would have to leave its small
   // workspace or, turned round, stand behind the wall.
-  const sim::Summary s = RunShipped(
-      "ball",
-      {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79", "safety.boxes=[-2, -2, -1, 0.1, 2, 3]"},
-      watch.Options(8.0));
+  const sim::Summary s = RunShipped("ball",
+                                    {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79",
+                                     "safety.planes=[0, 0, 1, 0.01, 1, 0, 0, -0.25]"},
+                                    watch.Options(8.0));
   PrintResidual(s);
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(LastMode(s), "hold");
@@ -77,7 +77,7 @@ TEST(Hold, HomeMotionEndsAtRestInTheReadyPosture) {
 }
 
 TEST(Hold, HomeMotionBlockedByABoxIsRefusedAndNotConverged) {
-  const sim::Summary s = RunShipped("home", {"safety.boxes=[0.2, -0.1, 0.4, 0.4, 0.1, 0.8]"});
+  const sim::Summary s = RunShipped("home", {"safety.boxes=[0.27, -0.03, 0.5, 0.34, 0.03, 0.62]"});
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(LastReason(s), "motion_refused");
   EXPECT_EQ(s.limit_violations, 0U);

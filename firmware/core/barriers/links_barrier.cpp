@@ -2,6 +2,7 @@
 #include "firmware/core/barriers/links_barrier.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/core/barriers/obstacle.hpp"
@@ -36,52 +37,71 @@ NearestLink NearestOfPlanes(const config::Obstacles& obstacles, const ArmBodies&
   return nearest;
 }
 
-// Whether the capsule may be nearer to the box than `distance`, by the ball about it.
-bool MayBeNearer(const config::Box& box, const PlacedCapsule& body, double distance) noexcept {
+// The distance of the ball about a capsule from the box, or how deep its middle is inside, less its radius:
+// the capsule is no nearer, and no deeper.
+double DistanceOfBall(const config::Box& box, const PlacedCapsule& body) noexcept {
   double away2 = 0.0;
+  double most = -HUGE_VAL;  // beyond a pair of faces
   for (int i = 0; i < 3; ++i) {
-    const double p = body.middle[i];
-    const double away = p > box.high[i] ? p - box.high[i] : p < box.low[i] ? box.low[i] - p : 0.0;
-    away2 += away * away;
+    const double beyond = std::max(body.middle[i] - box.high[i], box.low[i] - body.middle[i]);
+    most = std::max(most, beyond);
+    away2 += beyond > 0.0 ? beyond * beyond : 0.0;
   }
-  const double bound = distance + body.reach;
-  return bound > 0.0 && away2 < bound * bound;
+  return (most > 0.0 ? std::sqrt(away2) : most) - body.reach;
 }
 
-// The outer links, which usually are the nearest, come first.
-NearestLink NearestOfBox(const config::Box& box, const ArmBodies& bodies) noexcept {
+// Of the links that are nearer than `enough`; no body if there is none. The link whose ball is the nearest
+// comes first: it usually leaves nothing to look at among the others.
+NearestLink NearestOfBox(const config::Box& box, const ArmBodies& bodies, double enough) noexcept {
+  std::array<double, model::ArmShape::kMostBodies> ball;
+  int first = 1;
+  for (int k = 1; k < bodies.size; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    ball[i] = DistanceOfBall(box, bodies.body[i]);
+    first = ball[i] < ball[static_cast<std::size_t>(first)] ? k : first;
+  }
   NearestLink nearest;
-  for (int k = bodies.size - 1; k >= 1; --k) {
-    const PlacedCapsule& body = bodies.body[static_cast<std::size_t>(k)];
-    if (!MayBeNearer(box, body, nearest.clearance.distance)) {
-      continue;
+  nearest.clearance.distance = enough;
+  const auto consider = [&](int k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (!(ball[i] < nearest.clearance.distance)) {
+      return;
     }
+    const PlacedCapsule& body = bodies.body[i];
     SegmentClearance axis = ClearanceOf(box, body.p_BA, body.p_BB);
     axis.clearance.distance -= body.radius;
     if (axis.clearance.distance < nearest.clearance.distance) {
       nearest = {axis.clearance, axis.p_B, k};
+    }
+  };
+  consider(first);
+  for (int k = 1; k < bodies.size; ++k) {
+    if (k != first) {
+      consider(k);
     }
   }
   return nearest;
 }
 
 // Of row `i`.
-NearestLink NearestOf(const config::Obstacles& obstacles, int i, const ArmBodies& bodies) noexcept {
+NearestLink NearestOf(const config::Obstacles& obstacles, int i, const ArmBodies& bodies,
+                      double enough) noexcept {
   const int box = obstacles.num_planes > 0 ? i - 1 : i;
   return box < 0 ? NearestOfPlanes(obstacles, bodies)
-                 : NearestOfBox(obstacles.boxes[static_cast<std::size_t>(box)], bodies);
+                 : NearestOfBox(obstacles.boxes[static_cast<std::size_t>(box)], bodies, enough);
 }
 
 }  // namespace
 
-double ClearanceOfLinks(const config::Obstacles& obstacles, int i, const ArmBodies& bodies) noexcept {
-  return NearestOf(obstacles, i, bodies).clearance.distance;
+double ClearanceOfLinks(const config::Obstacles& obstacles, int i, const ArmBodies& bodies,
+                        double enough) noexcept {
+  return NearestOf(obstacles, i, bodies, enough).clearance.distance;
 }
 
 Barrier LinksBarrier(const config::ServoConfig& config, int i, const model::ArmPoses& poses,
                      const ArmBodies& bodies) noexcept {
   const model::ArmModel& arm = config.arm;
-  const NearestLink nearest = NearestOf(config.guard.obstacles, i, bodies);
+  const NearestLink nearest = NearestOf(config.guard.obstacles, i, bodies, HUGE_VAL);
   Barrier barrier;
   if (!std::isfinite(nearest.clearance.distance)) {
     return barrier;

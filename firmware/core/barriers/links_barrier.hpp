@@ -22,9 +22,9 @@ inline constexpr int kOuterLinks = 4;  // of these, planes keep clear
 }
 
 // The smallest distance of these links from the planes or the box of row `i` [m], 0 <= i < CountLinkRows.
-// Real-time: yes.
-[[nodiscard]] double ClearanceOfLinks(const config::Obstacles& obstacles, int i,
-                                      const ArmBodies& bodies) noexcept;
+// That from a box is at most `enough`: links that are further away cost little. Real-time: yes.
+[[nodiscard]] double ClearanceOfLinks(const config::Obstacles& obstacles, int i, const ArmBodies& bodies,
+                                      double enough) noexcept;
 
 // The barrier that keeps the distance of row `i` above guard.link_clearance [m] plus twice the workspace
 // margin. The links approach no faster than they can stop. A link that is already nearer must not come nearer

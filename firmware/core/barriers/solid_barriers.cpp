@@ -16,6 +16,10 @@ namespace {
 // therefore allows this much less clearance [m].
 constexpr double kSelfRoom = 0.01;
 
+// Links are as good as free of a box that is further than its margin by this distance: a stop then looks at
+// the box again when the arm can have come that far [m].
+constexpr double kFar = 0.5;
+
 }  // namespace
 
 SolidBarriers::SolidBarriers(const config::ServoConfig& config) noexcept
@@ -40,7 +44,8 @@ double SolidBarriers::ValueOf(int i, const model::ArmPoses& poses, const ArmBodi
   switch (KindOf(i)) {
     case Kind::kWorkspace: return -poses.X_BE.p.norm();
     case Kind::kHand: return ClearanceOf(guard.obstacles, i - 1, guard.hand, poses.X_BE).clearance.distance;
-    case Kind::kLinks: return ClearanceOfLinks(guard.obstacles, i - 1 - num_hand_, bodies);
+    case Kind::kLinks:
+      return ClearanceOfLinks(guard.obstacles, i - 1 - num_hand_, bodies, StopMarginOf(i) + kFar);
     case Kind::kSelf: break;
   }
   return SelfClearance(config_.arm, bodies);
@@ -72,7 +77,7 @@ double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& 
   const ArmBodies bodies = PlaceBodies(config.arm, poses);
   double clearance = HUGE_VAL;
   for (int i = 0; i < CountLinkRows(guard.obstacles); ++i) {
-    clearance = std::min(clearance, ClearanceOfLinks(guard.obstacles, i, bodies));
+    clearance = std::min(clearance, ClearanceOfLinks(guard.obstacles, i, bodies, HUGE_VAL));
   }
   for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
     clearance =

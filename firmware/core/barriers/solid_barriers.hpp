@@ -21,7 +21,8 @@ class SolidBarriers {
   [[nodiscard]] int size() const noexcept { return 1 + num_hand_ + num_links_ + (self_ ? 1 : 0); }
   [[nodiscard]] hal::Limit NameOf(int i) const noexcept;
   // h of barrier `i` [m], 0 <= i < size(), with the arm's links at `poses`; `bodies`: their capsules there.
-  // Real-time: yes.
+  // Of a box that is far from all links, h may be too small, but it is well above StopMarginOf. Real-time:
+  // yes.
   [[nodiscard]] double ValueOf(int i, const model::ArmPoses& poses, const ArmBodies& bodies) const noexcept;
   // The smallest h that is allowed during a stop [m].
   [[nodiscard]] double StopMarginOf(int i) const noexcept;

@@ -10,6 +10,7 @@
 #include "firmware/core/barriers/barrier_speed.hpp"
 #include "firmware/core/barriers/links_barrier.hpp"
 #include "firmware/core/barriers/motion_limits.hpp"
+#include "firmware/core/barriers/obstacle.hpp"
 #include "firmware/core/guard/guard_motion.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
 #include "tests/support/panda.hpp"
@@ -56,7 +57,9 @@ config::ServoConfig WithSelfClearance(double clearance) {
   return config;
 }
 
-double PlaneClearance(const VecN& q) { return ClearanceOfLinks(Planes().obstacles, 0, BodiesAt(q)); }
+double PlaneClearance(const VecN& q) {
+  return ClearanceOfLinks(Planes().obstacles, 0, BodiesAt(q), HUGE_VAL);
+}
 
 // The search tries points on the two axes of each pair, at most 1 mm apart.
 TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
@@ -112,6 +115,31 @@ TEST(LinksBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
     }
     EXPECT_NEAR(PlaneClearance(q), least, 1e-12);
   }
+}
+
+// As above, with all links that move, and a box. A limit on what is asked for changes nothing below it.
+TEST(LinksBarrierTest, ClearanceOfABoxIsTheSmallestOfAllLinksUpToWhatIsEnough) {
+  test::RandomStates random(84);
+  config::Obstacles obstacles;
+  obstacles.num_boxes = 1;
+  int near = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 low(random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), random.Uniform(-0.2, 0.8));
+    const config::Box& box = obstacles.boxes[0] = {low, low + Vec3(0.3, 0.2, 0.25)};
+    const ArmBodies bodies = BodiesAt(random.Position(Arm()));
+    double least = HUGE_VAL;
+    for (int body = 1; body < bodies.size; ++body) {
+      const PlacedCapsule& capsule = bodies.body[static_cast<std::size_t>(body)];
+      least =
+          std::min(least, ClearanceOf(box, capsule.p_BA, capsule.p_BB).clearance.distance - capsule.radius);
+    }
+    EXPECT_DOUBLE_EQ(ClearanceOfLinks(obstacles, 0, bodies, HUGE_VAL), least);
+    const double enough = 0.1;
+    EXPECT_DOUBLE_EQ(ClearanceOfLinks(obstacles, 0, bodies, enough), std::min(least, enough));
+    near += least < enough ? 1 : 0;
+  }
+  EXPECT_GT(near, 50);
+  EXPECT_LT(near, 250);
 }
 
 // Compares the row of `limits` with the finite difference of `clearance`.

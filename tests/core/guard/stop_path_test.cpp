@@ -107,7 +107,7 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
       const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, at);
       return std::array{
           barriers::ClearanceOf(config.guard.obstacles, 0, config.guard.hand, at.X_BE).clearance.distance,
-          barriers::ClearanceOfLinks(config.guard.obstacles, 0, bodies),
+          barriers::ClearanceOfLinks(config.guard.obstacles, 0, bodies, HUGE_VAL),
           barriers::SelfClearance(config.arm, bodies)};
     };
     const std::array least{config.guard.workspace_margin,
