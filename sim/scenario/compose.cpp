@@ -8,12 +8,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "sim/camera/mix_bits.hpp"
-#include "sim/scenario/bench_boxes.hpp"
 #include "sim/scenario/roll_pitch_yaw.hpp"
+#include "sim/scenario/solids.hpp"
 #include "sim/scenario/to_vector.hpp"
 
 namespace fovea::sim {
@@ -140,18 +139,6 @@ void CheckStart(const Scenario& s, const robots::Robot& robot) {
         fmt::format("arm.q_start is not allowed: the end effector is {:.3f} m from the base, beyond "
                     "safety.workspace_radius = {} m minus safety.workspace_margin = {} m",
                     radius, guard.workspace_radius, guard.workspace_margin));
-  }
-}
-
-void CheckOutside(const Scenario& s, const config::ServoConfig& servo) {
-  model::ArmPoses poses;
-  const Eigen::Map<const Eigen::VectorXd> q_start(s.arm.q_start.data(), servo.arm.num_joints);
-  model::ComputePoses(servo.arm, q_start, poses);
-  if (const double clearance = barriers::ClearanceOfArm(servo, poses); !(clearance > 0.0)) {
-    throw InputError(
-        fmt::format("arm.q_start is not allowed: hand, camera, tools or links are {:.3f} m inside a solid of "
-                    "safety.planes or safety.boxes",
-                    -clearance));
   }
 }
 

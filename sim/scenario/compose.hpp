@@ -53,8 +53,6 @@ void AddLoad(const model::Load& load, SimRobot& robot);
 // InputError: arm.q_start is outside the joints' range or the workspace, or arm.dq_start is too fast.
 void CheckStart(const Scenario& scenario, const robots::Robot& robot);
 
-// InputError: the arm starts inside a solid that the servo must avoid.
-void CheckOutside(const Scenario& scenario, const config::ServoConfig& servo);
 // InputError: camera.lens cannot be drawn.
 void CheckLens(const Scenario& scenario);
 // InputError: a target at servo.goal would be invisible.

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include "firmware/host/config/input_error.hpp"
-#include "sim/scenario/bench_boxes.hpp"
 
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/scenario_arm.hpp"
+#include "sim/scenario/solids.hpp"
 #include "sim/scenario/true_bench.hpp"
 
 namespace fovea::sim {
@@ -78,8 +78,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
     throw config::InputError(
         "servo.learn is not allowed with camera.enabled = false: the servo needs to see");
   }
-  CheckOutside(scenario, run.servo);
-  CheckBenchBoxes(scenario, run.servo);
+  CheckSolids(scenario, run.servo);
   CheckGoal(scenario);
   CheckTimes(scenario);
   CheckEnd(scenario);

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sim/scenario/bench_boxes.hpp"
 #include "sim/scenario/compose.hpp"
+#include "sim/scenario/solids.hpp"
 #include "sim/scenario/to_vector.hpp"
 
 namespace fovea::sim {

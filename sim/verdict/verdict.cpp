@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -20,7 +21,6 @@ constexpr double kConvergedPx = 1.0;                       // largest error of a
 constexpr double kConvergedM = 0.002;
 constexpr double kConvergedDeg = 0.5;  // for a goal with an orientation
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kNamedPercent = 5.0;   // of the motion: limits that acted less often are not named
 constexpr double kHomeBound = 1e-3;     // largest joint error at home [rad]
 constexpr double kAtRest = 0.01;        // a joint below this speed is at rest [rad/s, m/s]
 constexpr double kSettledShare = 0.02;  // settled: stays below this share of the first error
@@ -28,7 +28,11 @@ constexpr double kSettledShare = 0.02;  // settled: stays below this share of th
 }  // namespace
 
 Verdict::Verdict(const VerdictConfig& config)
-    : config_(config), barriers_(config.barriers), unwanted_(config.stop), notices_(config.faults) {}
+    : config_(config),
+      barriers_(config.barriers),
+      unwanted_(config.stop),
+      notices_(config.faults),
+      acting_(config.barriers.obstacles) {}
 
 void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   if (config_.has_eye) {
@@ -114,14 +118,11 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
                       (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * hal::kTickPeriodS));
     }
   }
-  const bool in_motion =
-      record.mode == hal::Mode::kTrack || record.mode == hal::Mode::kCoast || record.mode == hal::Mode::kMove;
-  motion_ticks_ += in_motion ? 1U : 0U;
+  acting_.Add(record);
   for (int i = 0; i < hal::kNumLimits; ++i) {
     const auto limit = static_cast<hal::Limit>(i);
     if ((record.limits_active & hal::Bit(limit)) != 0) {
       ++limit_ticks_[hal::Name(limit)];
-      motion_limit_ticks_.at(static_cast<std::size_t>(i)) += in_motion ? 1U : 0U;
     }
   }
   if (record.intake != hal::Intake::kNone) {
@@ -317,7 +318,7 @@ std::string Verdict::WhyNot(const Summary& summary) const {
     return WhyNeverAccepted(summary);
   }
   if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
-    return WhyHeld() + LimitedBy();
+    return WhyHeld() + acting_.InWords();
   }
   if (config_.target_moves) {
     const auto figure = [](const std::optional<double>& error) {
@@ -329,7 +330,7 @@ std::string Verdict::WhyNot(const Summary& summary) const {
                            ? fmt::format(", and {} mm rms, bound {:g} mm",
                                          figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm)
                            : std::string(),
-                       LimitedBy());
+                       acting_.InWords());
   }
   return fmt::format(
       "not converged: over the last {:g} s the target was not within {:g} px{}{} of its goal{}",
@@ -337,7 +338,7 @@ std::string Verdict::WhyNot(const Summary& summary) const {
       config_.eye.judges_metres ? fmt::format(" and {:g} mm", 1e3 * kConvergedM) : std::string(),
       config_.eye.judges_metres && config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg)
                                                           : std::string(),
-      LimitedBy());
+      acting_.InWords());
 }
 
 std::string Verdict::WhyNeverAccepted(const Summary& summary) const {
@@ -364,35 +365,13 @@ std::string Verdict::WhyNeverAccepted(const Summary& summary) const {
 
 // Of a run that ended in Hold.
 std::string Verdict::WhyHeld() const {
-  const char* keys = before_.hold_reason == hal::HoldReason::kEyeDoubted
-                         ? "; see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain"
-                     : before_.hold_reason == hal::HoldReason::kGoalUnreachable
-                         ? "; see target.position, servo.goal, safety.workspace_radius"
-                         : "";
+  const std::string keys = before_.hold_reason == hal::HoldReason::kEyeDoubted
+                               ? "; see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain"
+                           : before_.hold_reason == hal::HoldReason::kGoalUnreachable
+                               ? "; see " + acting_.KeysOfReach()
+                               : "";
   return fmt::format("not converged: the arm has held since {:.3f} s because {}{}", modes_.back().t_s,
                      run::InWords(before_.hold_reason), keys);
-}
-
-// E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of its motion": the limits that acted in
-// at least kNamedPercent of the ticks in motion, the longest first; "" if none did.
-std::string Verdict::LimitedBy() const {
-  std::vector<std::pair<std::uint64_t, hal::Limit>> acted;
-  for (int i = 0; i < hal::kNumLimits; ++i) {
-    if (const std::uint64_t ticks = motion_limit_ticks_.at(static_cast<std::size_t>(i)); ticks > 0) {
-      acted.emplace_back(ticks, static_cast<hal::Limit>(i));
-    }
-  }
-  std::stable_sort(acted.begin(), acted.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::string words;
-  for (const auto& [ticks, limit] : acted) {
-    const double percent = 100.0 * static_cast<double>(ticks) / static_cast<double>(motion_ticks_);
-    if (percent >= kNamedPercent) {
-      words += fmt::format("{} {} ({}) in {:.0f} %", words.empty() ? "; limited by" : ",", hal::Name(limit),
-                           hal::Key(limit), percent);
-    }
-  }
-  return words.empty() ? words : words + " of its motion";
 }
 
 }  // namespace fovea::sim

@@ -2,7 +2,6 @@
 // Judges a run against the simulator's truth.
 #pragma once
 
-#include <array>
 #include <deque>
 #include <map>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "fovea/hal/record.hpp"
 #include "sim/scenario/commanded_motion.hpp"
 #include "sim/scenario/fault_settings.hpp"
+#include "sim/verdict/acting_limits.hpp"
 #include "sim/verdict/barriers.hpp"
 #include "sim/verdict/camera_path.hpp"
 #include "sim/verdict/contact_count.hpp"
@@ -81,7 +81,6 @@ class Verdict {
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;
   [[nodiscard]] std::string WhyNeverAccepted(const Summary& summary) const;
   [[nodiscard]] std::string WhyHeld() const;
-  [[nodiscard]] std::string LimitedBy() const;
 
   const VerdictConfig config_;
 
@@ -113,8 +112,7 @@ class Verdict {
   std::size_t reference_jerk_ = reference_.Add("joint_jerk", LimitBook::Kind::kShare);
   NoticeBook notices_;
   std::map<std::string, std::uint64_t> limit_ticks_;
-  std::uint64_t motion_ticks_ = 0;  // in Track, Coast and Move
-  std::array<std::uint64_t, hal::kNumLimits> motion_limit_ticks_{};
+  ActingLimits acting_;
   std::map<std::string, std::uint64_t> measurements_;  // count by hal::Intake
   hal::TickRecord before_;
   bool has_record_ = false;

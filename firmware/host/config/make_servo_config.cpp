@@ -263,7 +263,8 @@ std::vector<Box> MakeBoxes(const std::string& key, const std::vector<double>& co
   for (auto box = corners.begin(); box != corners.end(); box += 6) {
     boxes.push_back({{box[0], box[1], box[2]}, {box[3], box[4], box[5]}});
     if (!(boxes.back().low.array() < boxes.back().high.array()).all()) {
-      throw InputError(key + ": each low corner must be below its high corner");
+      throw InputError(
+          fmt::format("{}: box {}: each low corner must be below its high corner", key, boxes.size()));
     }
   }
   return boxes;

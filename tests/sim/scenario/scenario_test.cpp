@@ -138,13 +138,17 @@ TEST(ScenarioTest, BoxesThatCannotBeAreRefused) {
   EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.7,0.4]"}),
             "bench.boxes has 5 entries: six for each box are allowed");
   EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.5,0.4,0.2]"}),
-            "bench.boxes: each low corner must be below its high corner");
+            "bench.boxes: box 1: each low corner must be below its high corner");
   EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
-                .find("bench.boxes: box 2 is not allowed: at arm.q_start"),
+                .find("inside box 2 of bench.boxes"),
             std::string::npos);
   EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]", "target.motion=pushed"}).find("pushed ball"),
             std::string::npos);
-  EXPECT_NE(message({"safety.boxes=[-0.1,-0.1,0.2,0.1,0.1,0.5]"}).find("arm.q_start is not allowed"),
+  EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, 0.4,-0.1,0,0.7,0.3,0.2]"})
+                .find("target.position is not allowed: it is in box 2 of bench.boxes"),
+            std::string::npos);
+  EXPECT_NE(message({"safety.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
+                .find("inside box 2 of safety.boxes"),
             std::string::npos);
 }
 

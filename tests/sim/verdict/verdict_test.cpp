@@ -312,6 +312,12 @@ TEST_F(VerdictTest, LimitsThatActedAreNamedTheLongestFirst) {
   EXPECT_THAT(Judge(1.0, far).verdict,
               testing::EndsWith("of its goal; limited by field_of_view (safety.view_margin_px) in 89 %, "
                                 "joint_jerk (safety.joint_jerk_fraction) in 6 % of its motion"));
+  config_.barriers.obstacles.num_boxes = 1;
+  EXPECT_THAT(
+      Judge(1.0, far).verdict,
+      testing::HasSubstr("field_of_view (safety.view_margin_px, safety.sight_clearance, safety.boxes) in"))
+      << "a box in the line of sight is not at the picture's edge";
+  config_.barriers.obstacles.num_boxes = 0;
   record.mode = hal::Mode::kHold;
   records_.insert(records_.end(), 30'000, record);
   EXPECT_THAT(Judge(31.0, far).verdict, testing::HasSubstr("limited by field_of_view"))

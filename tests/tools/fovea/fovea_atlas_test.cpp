@@ -155,6 +155,26 @@ TEST_F(AtlasTest, DrawsStartsWithoutRunningThem) {
   EXPECT_FALSE(fs::exists(folder_.path() / "draws")) << "no run is started";
 }
 
+TEST_F(AtlasTest, MakesViewsThatItRunsFromTheFile) {
+  const std::string file = folder_.path() / "views.csv";
+  const auto make = [](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{FOVEA_PROGRAM, "atlas", "--target", "sphere", "--seed", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::RunProgram(arguments, {}, std::chrono::seconds(300));
+  };
+  const test::ProgramResult made = make({"--make-views", file, "--runs", "1"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const test::ProgramResult result = Atlas("views", {"--starts", file});
+  ASSERT_EQ(result.exit_code, 1) << result.err;  // too short to converge
+  EXPECT_EQ(json::parse(result.out)["runs"], 1);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--make-views", ""},
+                                               {"--make-views", file, "--out", "x"},
+                                               {"--make-views", file, "--json"},
+                                               {"--make-views", folder_.path() / "none" / "views.csv"}}) {
+    EXPECT_EQ(make(more).exit_code, 2) << testing::PrintToString(more);
+  }
+}
+
 TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target.kind itself");
   ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");

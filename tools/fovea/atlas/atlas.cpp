@@ -80,6 +80,7 @@ int MakeViews(const AtlasArguments& arguments) {
   const atlas::Heading heading = HeadingOf(arguments, arguments.target, {});
   const atlas::Scene scene = atlas::LoadScene(arguments.target, atlas::SceneAssignments(heading.assignments));
   const int pairs = RunsOf(arguments);
+  atlas::CheckWritable(arguments.views);
   atlas::WriteFile(arguments.views, atlas::ViewsAsCsv(scene, heading.seed, pairs));
   fmt::print("{}: {} pairs of views\n", arguments.views, pairs);
   return config::kDone;
@@ -223,12 +224,17 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
               "--make-views", arguments.views,
               "run nothing, but write random starts to this file, for --starts: pairs of camera poses, in "
               "the ranges of a public benchmark")
+          ->check(
+              CLI::Validator([](const std::string& file) { return file.empty() ? "no file" : ""; }, "FILE"))
           ->excludes(draw_only);
   for (CLI::Option* without_runs : {draw_only, views}) {
     without_runs->needs(target);
     for (const char* option : {"--truth", "--truth-size", "--tornado", "--margin"}) {
       without_runs->excludes(atlas->get_option(option));
     }
+  }
+  for (const char* option : {"--out", "--resume"}) {
+    views->excludes(atlas->get_option(option));
   }
   CLI::Option* starts =
       atlas
@@ -240,7 +246,8 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
        {"--runs", "--truth-size", "--tornado", "--margin", "--draw-only", "--make-views"}) {
     starts->excludes(atlas->get_option(option));
   }
-  CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
+  CLI::Option* json =
+      atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table")->excludes(views);
   atlas
       ->add_flag("--markdown", arguments.markdown,
                  "with --faults, --robustness, --contact or --findings: print the page sim/FAULTS.md, "

@@ -26,6 +26,12 @@ std::string ReasonOf(const std::string& said) {
   return line;
 }
 
+void CheckWritable(const std::filesystem::path& file) {
+  if (!std::ofstream(file, std::ios::binary | std::ios::app)) {
+    throw config::InputError(file.string() + ": cannot be written");
+  }
+}
+
 void WriteFile(const std::filesystem::path& file, const std::string& content) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream << content;

@@ -13,6 +13,8 @@ std::string FirstLine(const std::string& text);
 // The first line of what the simulator `said`, without its name and without --set, which the caller did not
 // write.
 std::string ReasonOf(const std::string& said);
+// InputError: the file cannot be written. Keeps what is in it; to be asked before long work.
+void CheckWritable(const std::filesystem::path& file);
 // InputError: the file cannot be written.
 void WriteFile(const std::filesystem::path& file, const std::string& content);
 
