@@ -81,7 +81,11 @@ int MakeViews(const AtlasArguments& arguments) {
   const atlas::Scene scene = atlas::LoadScene(arguments.target, atlas::SceneAssignments(heading.assignments));
   const int pairs = RunsOf(arguments);
   atlas::CheckWritable(arguments.views);
-  atlas::WriteFile(arguments.views, atlas::ViewsAsCsv(scene, heading.seed, pairs));
+  {
+    atlas::Progress progress("views of " + arguments.target, pairs, "pairs", "draws refused");
+    const auto show = [&progress](int done, int refused) { progress.Show(done, refused); };
+    atlas::WriteFile(arguments.views, atlas::ViewsAsCsv(scene, heading.seed, pairs, show));
+  }
   fmt::print("{}: {} pairs of views\n", arguments.views, pairs);
   return config::kDone;
 }

@@ -90,13 +90,15 @@ ViewPair DrawViewPair(const Scene& scene, std::uint64_t seed, int index) {
     }
     const auto is_allowed = [&](const VecN& q) { return !sampler.Refusal(checks.At(q), pair.X_BO); };
     if (postures.WithCameraAt(pair.X_BC, is_allowed)) {
+      pair.refused = draw;
       return pair;
     }
   }
   throw std::runtime_error("no feasible pair of views in a million draws");
 }
 
-std::string ViewsAsCsv(const Scene& scene, std::uint64_t seed, int pairs) {
+std::string ViewsAsCsv(const Scene& scene, std::uint64_t seed, int pairs,
+                       const std::function<void(int, int)>& on_pair) {
   std::string text = fmt::format(
       "# {} pairs of views, drawn with seed {}: the camera's turn and shift from start to goal are in the "
       "comments.\n"
@@ -104,12 +106,17 @@ std::string ViewsAsCsv(const Scene& scene, std::uint64_t seed, int pairs) {
       "target_x,target_y,target_z,target_roll,target_pitch,target_yaw,"
       "goal_x,goal_y,goal_z,goal_roll,goal_pitch,goal_yaw,seed\n",
       pairs, seed);
+  int refused = 0;
   for (int index = 0; index < pairs; ++index) {
     const ViewPair pair = DrawViewPair(scene, seed, index);
     const Pose X_CO{config::RollPitchYaw(pair.goal.rpy_deg),
                     {pair.goal.xyz[0], pair.goal.xyz[1], pair.goal.xyz[2]}};
     text += fmt::format("# {:.1f} deg, {:.0f} mm\n{},{},{},{}\n", pair.turn / kRadPerDeg, 1e3 * pair.shift,
                         PoseInCsv(pair.X_BC), PoseInCsv(pair.X_BO), PoseInCsv(X_CO), index + 1);
+    refused += pair.refused;
+    if (on_pair) {
+      on_pair(index + 1, refused);
+    }
   }
   return text;
 }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "tools/fovea/atlas/sampler.hpp"
@@ -22,12 +23,15 @@ struct ViewPair {
   Goal goal;
   double turn = 0.0;   // of the camera, from start to goal [rad]
   double shift = 0.0;  // [m]
+  int refused = 0;     // draws before it that were refused
 };
 
 // Pair `index` of `seed`. Throws std::runtime_error after a million draws.
 [[nodiscard]] ViewPair DrawViewPair(const Scene& scene, std::uint64_t seed, int index);
 
-// A file for --starts, with `pairs` of them.
-[[nodiscard]] std::string ViewsAsCsv(const Scene& scene, std::uint64_t seed, int pairs);
+// A file for --starts, with `pairs` of them. `on_pair` is told after each how many there are, and how many
+// draws were refused.
+[[nodiscard]] std::string ViewsAsCsv(const Scene& scene, std::uint64_t seed, int pairs,
+                                     const std::function<void(int, int)>& on_pair = {});
 
 }  // namespace fovea::atlas
