@@ -19,7 +19,12 @@ class BulletArmTest : public testing::TestWithParam<const char*> {
  protected:
   BulletArmTest()
       : robot_(robots::LoadRobot(test::RobotsFolder() + GetParam())),
-        sim_robot_(LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link)) {}
+        sim_robot_(LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link)) {
+    for (SimLink& link : sim_robot_.links) {
+      link.rotor_inertia =
+          link.dof < 0 ? 0.0 : robot_.model.joints[static_cast<std::size_t>(link.dof)].rotor_inertia;
+    }
+  }
 
   robots::Robot robot_;
   SimRobot sim_robot_;
