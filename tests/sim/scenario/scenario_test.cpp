@@ -14,6 +14,16 @@
 namespace fovea::sim {
 namespace {
 
+// Why the scenario `ball` is refused with these assignments; "" if it is not.
+std::string RefusalOf(const std::vector<std::string>& assignments) {
+  try {
+    DescribeRun(LoadScenario("ball", assignments));
+  } catch (const config::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 // A key that a fault or limit refers to must exist.
 TEST(ScenarioTest, EveryKeyThatAFaultOrLimitNamesExists) {
   Scenario scenario;
@@ -72,30 +82,22 @@ TEST(ScenarioTest, ServoAndPhysicsHaveTheRotors) {
 }
 
 TEST(ScenarioTest, DrivesThatCannotBeAreRefused) {
-  const auto message = [](const std::vector<std::string>& assignments) -> std::string {
-    try {
-      DescribeRun(LoadScenario("ball", assignments));
-    } catch (const config::InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
   EXPECT_EQ(
-      message({"arm.realism=ur"}),
+      RefusalOf({"arm.realism=ur"}),
       "arm.realism = \"ur\" is not allowed with arm \"panda\": it is for a Universal Robot (a name that "
       "begins with \"ur\" and a digit)");
   // A Puma has six joints, too.
   const std::vector<std::string> puma{"arm.model=puma560", "arm.q_start=[0,0.5,0,0,0.5,0]", "arm.realism=ur"};
-  EXPECT_NE(message(puma).find("\"ur\" is not allowed with arm \"puma560\""), std::string::npos);
-  EXPECT_NE(message({"arm.model=ur5e", "arm.q_start=[0,0,0,0,0,0]", "arm.realism=panda"})
+  EXPECT_NE(RefusalOf(puma).find("\"ur\" is not allowed with arm \"puma560\""), std::string::npos);
+  EXPECT_NE(RefusalOf({"arm.model=ur5e", "arm.q_start=[0,0,0,0,0,0]", "arm.realism=panda"})
                 .find("\"panda\" is not allowed with arm \"ur5e\": it is for a Panda"),
             std::string::npos);
-  EXPECT_EQ(message({"arm.torque_ripple=[1, 2]"}), "arm.torque_ripple has 2 entries: 1 or 7 are allowed");
-  EXPECT_EQ(message({"arm.rotor_inertia=[0.1]"}),
+  EXPECT_EQ(RefusalOf({"arm.torque_ripple=[1, 2]"}), "arm.torque_ripple has 2 entries: 1 or 7 are allowed");
+  EXPECT_EQ(RefusalOf({"arm.rotor_inertia=[0.1]"}),
             "arm.rotor_inertia has 1 entries, arm \"panda\" has 7 joints");
-  EXPECT_NE(message({"arm.rotor_inertia=[-0.1]"}).find("arm.rotor_inertia"), std::string::npos);
-  EXPECT_NE(message({"arm.torque_delay_ms=51"}).find("arm.torque_delay_ms"), std::string::npos);
-  EXPECT_NE(message({"truth.arm.rotor_inertia.offset=-0.1"}).find("truth.arm.rotor_inertia"),
+  EXPECT_NE(RefusalOf({"arm.rotor_inertia=[-0.1]"}).find("arm.rotor_inertia"), std::string::npos);
+  EXPECT_NE(RefusalOf({"arm.torque_delay_ms=51"}).find("arm.torque_delay_ms"), std::string::npos);
+  EXPECT_NE(RefusalOf({"truth.arm.rotor_inertia.offset=-0.1"}).find("truth.arm.rotor_inertia"),
             std::string::npos);
 }
 
@@ -126,28 +128,20 @@ TEST(ScenarioTest, ElasticJointsThatCannotBeAreRefused) {
 }
 
 TEST(ScenarioTest, BoxesThatCannotBeAreRefused) {
-  const auto message = [](const std::vector<std::string>& assignments) -> std::string {
-    try {
-      DescribeRun(LoadScenario("ball", assignments));
-    } catch (const config::InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]"}), "");
-  EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.7,0.4]"}),
+  EXPECT_EQ(RefusalOf({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]"}), "");
+  EXPECT_EQ(RefusalOf({"bench.boxes=[0.6,0.3,0,0.7,0.4]"}),
             "bench.boxes has 5 entries: six for each box are allowed");
-  EXPECT_EQ(message({"bench.boxes=[0.6,0.3,0,0.5,0.4,0.2]"}),
+  EXPECT_EQ(RefusalOf({"bench.boxes=[0.6,0.3,0,0.5,0.4,0.2]"}),
             "bench.boxes: box 1: each low corner must be below its high corner");
-  EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
+  EXPECT_NE(RefusalOf({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
                 .find("inside box 2 of bench.boxes"),
             std::string::npos);
-  EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]", "target.motion=pushed"}).find("pushed ball"),
+  EXPECT_NE(RefusalOf({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2]", "target.motion=pushed"}).find("pushed ball"),
             std::string::npos);
-  EXPECT_NE(message({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, 0.4,-0.1,0,0.7,0.3,0.2]"})
+  EXPECT_NE(RefusalOf({"bench.boxes=[0.6,0.3,0,0.7,0.4,0.2, 0.4,-0.1,0,0.7,0.3,0.2]"})
                 .find("target.position is not allowed: it is in box 2 of bench.boxes"),
             std::string::npos);
-  EXPECT_NE(message({"safety.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
+  EXPECT_NE(RefusalOf({"safety.boxes=[0.6,0.3,0,0.7,0.4,0.2, -0.1,-0.1,0.2,0.1,0.1,0.5]"})
                 .find("inside box 2 of safety.boxes"),
             std::string::npos);
 }
