@@ -55,7 +55,9 @@ TEST(ScenarioTest, EveryRenamedKeyHasASuccessorAndIsNoKeyItself) {
 }
 
 TEST(ScenarioTest, RealismFillsInWhatIsNotGiven) {
-  const auto arm = [](std::vector<std::string> assignments) { return LoadScenario("ball", assignments).arm; };
+  const auto arm = [](const std::vector<std::string>& assignments) {
+    return LoadScenario("ball", assignments).arm;
+  };
   EXPECT_TRUE(arm({}).rotor_inertia.empty());
   EXPECT_EQ(arm({}).drives.torque_delay_ms, 0.0);
   const auto panda = arm({"arm.realism=panda"});
