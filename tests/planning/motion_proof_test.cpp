@@ -31,8 +31,9 @@ double SmallestRoom(const config::ServoConfig& config, const Plan& plan) {
   double least = HUGE_VAL;
   Reference at;
   model::ArmPoses poses;
-  for (double t = 0.0; t <= plan.Duration(); t += 2e-4) {
-    plan.At(t, at);
+  const auto steps = static_cast<int>(plan.Duration() / 2e-4);
+  for (int i = 0; i <= steps; ++i) {
+    plan.At(2e-4 * i, at);
     model::ComputePoses(config.arm, at.q, poses);
     least = std::min(least, RoomBefore(config, poses));
   }

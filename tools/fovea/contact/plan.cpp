@@ -76,9 +76,9 @@ std::vector<std::string> AssignmentsOf(const Push& push, double force, const mod
       push.place == Place::kHand ? poses.X_BE.p : poses.X_BL.at(static_cast<std::size_t>(joints - 1)).p;
   model::LinearJacobian J;
   model::ComputeLinearJacobian(arm, poses, p_B, J);
-  std::vector<double> torques;
-  for (int i = 0; i < arm.num_joints; ++i) {
-    torques.push_back(i < joints ? force * J.col(i).dot(push.direction_B) : 0.0);
+  std::vector<double> torques(static_cast<std::size_t>(arm.num_joints), 0.0);
+  for (int i = 0; i < joints; ++i) {
+    torques[static_cast<std::size_t>(i)] = force * J.col(i).dot(push.direction_B);
   }
   return {fmt::format("faults.push=[{:.4f}]", fmt::join(torques, ", ")),
           fmt::format("faults.push_s=[{:.3f}, {:.3f}]", push.from_s, push.from_s + kPushS)};
