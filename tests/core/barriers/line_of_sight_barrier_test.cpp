@@ -170,6 +170,8 @@ TEST(LineOfSightBarrierTest, BoxesKeepOutOfTheLinesOfSightBeforeTheTarget) {
     };
     const double gap = clearance(q);
     EXPECT_LT(gap, least + 1e-12);
+    EXPECT_LT(least - gap, 0.45 * (p_BO - posture.X_BC.p).norm() / kPoints + 1e-12)
+        << "the search is not so coarse";
     worst_search = std::max(worst_search, least - gap);
     if (gap == alone) {
       continue;
@@ -190,7 +192,6 @@ TEST(LineOfSightBarrierTest, BoxesKeepOutOfTheLinesOfSightBeforeTheTarget) {
   std::cout << boxes << " of 300 boxes are nearer than links, " << hidden
             << " hide the target; the search finds up to " << 1e3 * worst_search
             << " mm more, rows are off by at most " << worst_rate << " m/s\n";
-  EXPECT_LT(worst_search, 0.001);
   EXPECT_LT(worst_rate, 1e-6);
   EXPECT_GT(boxes, 100);
   EXPECT_GT(hidden, 10);

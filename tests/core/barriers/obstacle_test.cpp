@@ -73,12 +73,13 @@ TEST(ObstacleTest, SegmentClearanceIsTheSmallestFoundByASearch) {
       least = std::min(least, ClearanceOf(obstacles, 0, a + k / double{kPoints} * (b - a)).distance);
     }
     EXPECT_LT(nearest.clearance.distance, least + 1e-14);
+    EXPECT_LT(least - nearest.clearance.distance, 0.5 * (b - a).norm() / kPoints + 1e-14)
+        << "the search is not so coarse";
     worst = std::max(worst, least - nearest.clearance.distance);
     entering += nearest.clearance.distance < 0.0 ? 1 : 0;
   }
   std::cout << "the search finds up to " << 1e3 * worst << " mm more; " << entering
             << " segments enter the box\n";
-  EXPECT_LT(worst, 0.002);
   EXPECT_GT(entering, 200);
 }
 
