@@ -38,8 +38,8 @@ TEST_P(StillPlate, ConvergesToTheGoal) {
   PrintResidual(s);
   EXPECT_TRUE(s.converged);
   EXPECT_GE(s.start_error_px.value(), 100.0);
-  EXPECT_LE(s.final_error_px_rms.value(), 0.5);
-  EXPECT_LE(s.final_error_mm.value(), 0.5);
+  EXPECT_LE(s.final_error_px_rms.value(), 0.1);
+  EXPECT_LE(s.final_error_mm.value(), 0.15);
   EXPECT_LE(s.final_error_deg.value(), 0.2);
   EXPECT_EQ(LastMode(s), "track");
   ExpectSound(s);
