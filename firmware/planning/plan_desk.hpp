@@ -14,8 +14,9 @@ namespace fovea::planning {
 
 class PlanDesk {
  public:
-  // `config`: as for Planner.
-  explicit PlanDesk(const config::ServoConfig& config) : planner_(config) {}
+  // As for Planner.
+  explicit PlanDesk(const config::ServoConfig& config, const EyeReach& reach = {})
+      : planner_(config, reach) {}
   PlanDesk(const PlanDesk&) = delete;
   PlanDesk& operator=(const PlanDesk&) = delete;
 

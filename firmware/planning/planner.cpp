@@ -51,8 +51,8 @@ bool IsWhole(const config::ServoConfig& config, const PlanRequest& request) noex
 }  // namespace
 
 struct Planner::Parts {
-  explicit Parts(const config::ServoConfig& servo)
-      : config(servo), space(servo), limits(LimitsOfPlan(servo)), speed(limits, kMostPoints) {
+  Parts(const config::ServoConfig& servo, const EyeReach& reach)
+      : config(servo), space(servo, reach), limits(LimitsOfPlan(servo)), speed(limits, kMostPoints) {
     path.reserve(kMostCorners);
     corners.reserve(kMostCorners);
   }
@@ -161,6 +161,9 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
       effort.goals = static_cast<int>(goals.goals().size());
       if (found_goals != PlanOutcome::kFound) {
         outcome = found_goals;
+        if (found_goals == PlanOutcome::kGoalNotClear && space.AllowLessSight()) {
+          continue;  // a goal beside a box is better than none
+        }
         if (static_cast<double>(work.left()) < (1.0 - kGoalShare) * static_cast<double>(request.budget)) {
           return outcome;
         }
@@ -196,7 +199,8 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
   return least < HUGE_VAL ? PlanOutcome::kFound : outcome;
 }
 
-Planner::Planner(const config::ServoConfig& config) : parts_(std::make_unique<Parts>(config)) {}
+Planner::Planner(const config::ServoConfig& config, const EyeReach& reach)
+    : parts_(std::make_unique<Parts>(config, reach)) {}
 Planner::~Planner() = default;
 
 void Planner::Compute(const PlanRequest& request, Plan& plan) noexcept {

@@ -10,13 +10,14 @@
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/trajectory/plan.hpp"
 #include "firmware/core/trajectory/plan_request.hpp"
+#include "firmware/planning/eye_reach.hpp"
 
 namespace fovea::planning {
 
 class Planner {
  public:
   // `config` must be one that the servo accepts, and outlive the planner. May throw std::bad_alloc.
-  explicit Planner(const config::ServoConfig& config);
+  explicit Planner(const config::ServoConfig& config, const EyeReach& reach = {});
   ~Planner();
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;

@@ -16,9 +16,13 @@ constexpr double kProofRoom = 0.0005;  // a start nearer than this could not be 
 // Before lines of sight [m]: links are rounder in the model than in the picture, and the mount is not known
 // exactly.
 constexpr double kSightRoom = 0.025;
+constexpr double kLeastSightRoom = 0.003;  // the same if no goal has more
 // Before the edges of the picture, normalised: about what a mount that is turned by 1 degree moves the target
 // by as the hand turns.
 constexpr double kPictureRoom = 0.03;
+// From a start with less, a path leads inward, and has that room from this distance on [rad]: along the edge
+// it would crawl, because every motion towards a barrier is slow near it.
+constexpr double kInward = 0.3;
 constexpr double kOutside = 0.05;    // a start with the target further past the picture's bound is refused
 constexpr double kTiltRoom = 0.02;   // before a disc's largest tilt, cosine
 constexpr double kJointRoom = 0.02;  // before the ends of a joint's range [rad, m]
@@ -29,6 +33,7 @@ constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular
 constexpr double kEdgeOn = 0.1;
 constexpr double kSteepest = 0.35;
 constexpr double kFacingRoom = 0.01;    // of this cosine, for a start that has less
+constexpr double kReachRoom = 0.05;     // share of the detector's distances that a path keeps
 constexpr double kNearestPoint = 0.05;  // of the target's points [m]
 constexpr double kLookDamping = 1e-6;   // of J J^T
 constexpr double kTurnMost = 0.3;       // of one LookStep [rad]
@@ -51,8 +56,9 @@ Range RangeOf(const config::ServoConfig& config, double room) noexcept {
 
 }  // namespace
 
-PostureSpace::PostureSpace(const config::ServoConfig& config) noexcept
+PostureSpace::PostureSpace(const config::ServoConfig& config, const EyeReach& reach) noexcept
     : config_(config),
+      detector_(reach),
       solid_(config),
       outline_(config.feature.Outline()),
       levers_(barriers::Levers(config.arm, config.guard.hand)),
@@ -95,8 +101,10 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   Work none(1);
   Posture start;
   steepest_ = kEdgeOn;
+  reach_ = detector_;
   Place(q, none, start);
-  picture_room_ = 0.0;
+  q_start_ = q;
+  start_room_ = 0.0;
   if (!start.is_faced || !(PictureRoom(start) > -kOutside)) {
     blocker = hal::Limit::kFieldOfView;
     return PlanOutcome::kTargetNotInSight;
@@ -112,11 +120,20 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
     room_[k] = std::min(kRoom, value - margin_[k]);
     bound_[k] = value - margin_[k] < kProofRoom ? solid_.StopMarginOf(i) : margin_[k];
   }
+  const double distance = start.X_CO.p.norm();
+  reach_.nearest = std::min((1.0 + kReachRoom) * detector_.nearest, distance);
+  reach_.farthest = std::max((1.0 - kReachRoom) * detector_.farthest, distance);
   steepest_ = std::max(kEdgeOn, std::min(kSteepest, CosineTo(start) - kFacingRoom));
-  picture_room_ = std::min(kPictureRoom, PictureRoom(start));
+  start_room_ = std::min(kPictureRoom, PictureRoom(start));
   sight_room_ = std::min(kSightRoom, SightRoom(start, bodies));
   tilt_room_ = std::min(kTiltRoom, Tilt(start));
   return PlanOutcome::kFound;
+}
+
+bool PostureSpace::AllowLessSight() noexcept {
+  const bool is_less = sight_room_ > kLeastSightRoom;
+  sight_room_ = std::min(sight_room_, kLeastSightRoom);
+  return is_less;
 }
 
 void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) const noexcept {
@@ -126,7 +143,9 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
   posture.X_BC = posture.poses.X_BE * config_.X_EC;
   posture.X_CO = posture.X_BC.Inverse() * X_BO_;
   model::ComputeJacobian(config_.arm, posture.poses, config_.X_EC, posture.J_C);
-  bool faced = !config_.feature.SeesOrientation() || CosineTo(posture) > steepest_;
+  const double distance = posture.X_CO.p.norm();
+  bool faced = (!config_.feature.SeesOrientation() || CosineTo(posture) > steepest_) &&
+               distance >= reach_.nearest && distance <= reach_.farthest;
   for (int i = 0; i < outline_.num_points; ++i) {
     faced = faced && (posture.X_CO * outline_.p_OP[static_cast<std::size_t>(i)]).z() > kNearestPoint;
   }
@@ -146,7 +165,12 @@ double PostureSpace::PictureRoom(const Posture& posture) const noexcept {
   for (const barriers::Barrier& side : posture.picture) {
     least = std::min(least, side.value - side.margin);
   }
-  return least - picture_room_;
+  return least - NeededRoom(posture.q);
+}
+
+double PostureSpace::NeededRoom(const model::VecN& q) const noexcept {
+  const double share = std::min(Distance(q, q_start_) / kInward, 1.0);
+  return start_room_ + share * (kPictureRoom - start_room_);
 }
 
 barriers::Sight PostureSpace::SightAt(const Posture& posture,
@@ -173,7 +197,8 @@ PostureSpace::Verdict PostureSpace::Judge(const Posture& posture, double share) 
   const auto needed = [share](double room) { return room > 0.0 ? share * room : room; };
   Verdict verdict;
   verdict.blocker = hal::Limit::kFieldOfView;
-  if (!posture.is_faced || !(PictureRoom(posture) + picture_room_ >= needed(picture_room_)) ||
+  const double picture_room = NeededRoom(posture.q);
+  if (!posture.is_faced || !(PictureRoom(posture) + picture_room >= needed(picture_room)) ||
       !(Tilt(posture) >= needed(tilt_room_))) {
     return verdict;
   }

@@ -18,6 +18,7 @@
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/trajectory/plan.hpp"
 #include "firmware/core/trajectory/plan_request.hpp"
+#include "firmware/planning/eye_reach.hpp"
 #include "firmware/planning/work.hpp"
 
 namespace fovea::planning {
@@ -30,8 +31,9 @@ struct Posture {
   model::Pose X_CO;
   model::Mat6N J_C;  // body Jacobian of the camera
   barriers::PictureBarriers picture;
-  bool is_faced =
-      false;  // target in front of the camera; a flat one shows its painted side, not too obliquely
+  // Target in front of the camera, where the detector looks for it; a flat one shows its painted side, not
+  // too obliquely.
+  bool is_faced = false;
 };
 
 struct Range {
@@ -46,11 +48,14 @@ struct Range {
 class PostureSpace {
  public:
   // `config` must outlive the space.
-  explicit PostureSpace(const config::ServoConfig& config) noexcept;
+  explicit PostureSpace(const config::ServoConfig& config, const EyeReach& reach = {}) noexcept;
 
   // Sets target and start. kFound if the start is allowed; else the reason, with the limit in `blocker`.
   [[nodiscard]] trajectory::PlanOutcome Begin(const trajectory::PlanRequest& request,
                                               hal::Limit& blocker) noexcept;
+
+  // From here to the next Begin, lines of sight need less room. False if they already do.
+  bool AllowLessSight() noexcept;
 
   // The posture at `q`; spends one unit of work. Joint ranges are not checked here.
   void Place(const model::VecN& q, Work& work, Posture& posture) const noexcept;
@@ -95,11 +100,15 @@ class PostureSpace {
   // Cosine between a flat target's normal and the line of sight.
   [[nodiscard]] static double CosineTo(const Posture& posture) noexcept;
   [[nodiscard]] double Tilt(const Posture& posture) const noexcept;
+  // Before the edges of the picture, normalised.
+  [[nodiscard]] double NeededRoom(const model::VecN& q) const noexcept;
   [[nodiscard]] barriers::Sight SightAt(const Posture& posture,
                                         const barriers::ArmBodies& bodies) const noexcept;
   [[nodiscard]] double SightRoom(const Posture& posture, const barriers::ArmBodies& bodies) const noexcept;
 
   const config::ServoConfig& config_;
+  const EyeReach detector_;  // as configured
+  EyeReach reach_;           // with some room, or what the start has
   barriers::SolidBarriers solid_;
   features::TargetOutline outline_;
   barriers::PerJoint levers_;
@@ -108,10 +117,11 @@ class PostureSpace {
   std::array<double, kMostSolids> room_{};    // that a path keeps beyond [m]
   // What the proof uses instead of margin_ [m]: from a start nearer than that, the guard's proof of a stop's.
   std::array<double, kMostSolids> bound_{};
-  double steepest_ = 0.0;      // least CosineTo
-  double picture_room_ = 0.0;  // normalised
-  double sight_room_ = 0.0;    // [m]
-  double tilt_room_ = 0.0;     // cosine
+  double steepest_ = 0.0;  // least CosineTo
+  model::VecN q_start_;
+  double start_room_ = 0.0;  // before the picture's edges at the start, normalised
+  double sight_room_ = 0.0;  // [m]
+  double tilt_room_ = 0.0;   // cosine
   Range range_;
   Range goal_range_;
   model::Pose X_BO_;

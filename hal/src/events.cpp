@@ -112,7 +112,7 @@ constexpr Table<kNumPlanEvents> kPlanEventTable{{
     {"stale", "", "a plan came for another start or target, and is refused"},
     {"late", "", "no plan came in time: the visual law goes on alone"},
     {"held", "", "limits hold the arm up on its plan: a new one is asked for"},
-    {"target_moved", "", "the target is elsewhere than planned: a new plan is asked for"},
+    {"target_moved", "", "the target is elsewhere than planned: the plan is dropped"},
     {"done", "", "the plan's end is reached: the visual law goes on"},
     {"unknown", "", "an unknown event of a plan"},
 }};

@@ -14,6 +14,7 @@
 #include "firmware/host/config/printed_table.hpp"
 #include "firmware/host/config/program.hpp"
 #include "sim/app/run_command.hpp"
+#include "sim/app/runs_command.hpp"
 #include "sim/app/serve_command.hpp"
 #include "sim/calibration/pictures.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -154,6 +155,8 @@ int main(int argc, char** argv) {
   arguments.command = config::CommandLine(argc, argv);
   CLI::App* run = app.add_subcommand("run", "simulate a scenario");
   sim::AddRun(*run, arguments);
+  CLI::App* runs = app.add_subcommand("runs", "simulate many runs in one process, as standard input asks");
+  runs->footer(sim::kRunsHelp);
   sim::ServeArguments serve_arguments;
   CLI::App* serve =
       app.add_subcommand("serve", "simulate the scenario's Panda as a network robot, until interrupted");
@@ -168,6 +171,7 @@ int main(int argc, char** argv) {
   AddKeys(*keys, keys_arguments);
   return config::RunProgram("fovea-sim", app, argc, argv, [&] {
     return run->parsed()        ? sim::RunCommand(arguments)
+           : runs->parsed()     ? sim::RunsCommand()
            : serve->parsed()    ? sim::ServeCommand(serve_arguments)
            : pictures->parsed() ? TakePictures(picture_arguments)
            : list->parsed()     ? List()

@@ -13,7 +13,6 @@
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/host/recording/trace/tick_trace.hpp"
 #include "firmware/host/run/run_shell.hpp"
-#include "firmware/planning/plan_desk.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/stalling_clock.hpp"
@@ -24,6 +23,7 @@
 #include "sim/run/outcome.hpp"
 #include "sim/run/progress.hpp"
 #include "sim/run/run_beliefs.hpp"
+#include "sim/run/sim_planner.hpp"
 #include "sim/run/sim_vision.hpp"
 #include "sim/run/trace.hpp"
 #include "sim/scenario/compose.hpp"
@@ -64,19 +64,20 @@ class Run {
     }
     if (HasEye()) {
       // If the world waits for each frame, no frame is lost. A real camera buffers two.
-      vision_.Open(WaitsForFrames() ? 1024 : 2, trace_ ? &*trace_ : nullptr, options_.renderers);
+      const bool is_recorded = options_.live != nullptr || (options_.report && !options_.out.empty());
+      vision_.Open({WaitsForFrames() ? std::size_t{1024} : 2, trace_ ? &*trace_ : nullptr, options_.renderers,
+                    options_.pool, WaitsForFrames() && !is_recorded});
     }
     // The folder is created last, so that a refused run leaves none.
     // A board that ticks by its own timer sees other inputs than the host: its log cannot be replayed.
     const bool replayable = !board_ || !options_.board.by_timer;
-    RunFilesConfig files;
-    files.out = options_.out;
-    files.report = options_.report;
-    files.renderer_index = options_.renderers;
-    files.pictures_if_failed = options_.pictures_if_failed;
-    files.may_drop = options_.pace == Pace::kReal;
-    files.replayable = replayable;
-    files.command = options_.command;
+    RunFilesConfig files{.out = options_.out,
+                         .report = options_.report,
+                         .pictures_if_failed = options_.pictures_if_failed,
+                         .renderer_index = options_.renderers,
+                         .may_drop = options_.pace == Pace::kReal,
+                         .replayable = replayable,
+                         .command = options_.command};
     if (options_.live != nullptr) {
       files.tap = options_.live->tap();
       files.open_ended = true;
@@ -159,7 +160,7 @@ class Run {
 
   void BuildWorld() {
     verdict_ = std::make_unique<Verdict>(MakeVerdictConfig(about_));
-    shell_->UsePlanner(plans_.emplace(about_.servo).box());
+    shell_->UsePlanner(planner_.emplace(about_.servo, about_.reach, about_.scenario.faults.planner).box());
     beliefs_.emplace(about_, options_.live != nullptr, WaitsForFrames());
     if (about_.theory) {
       theory_.emplace(*about_.theory);
@@ -233,7 +234,7 @@ class Run {
       loop.UseMotion(*motion_);
     }
     if (live_) {
-      live_->Begin({about_, *world_, *faulty_arm_, vision_, loop, stalling, {}},
+      live_->Begin({about_, *world_, *faulty_arm_, vision_, *planner_, loop, stalling, {}},
                    [this] { return beliefs_->now(); });
     }
     beliefs_->UseLoop(&loop);
@@ -267,9 +268,7 @@ class Run {
       EndEarly(/*interrupted=*/false);
       return true;
     }
-    if (wait) {
-      plans_->Act(now_ns);
-    }
+    planner_->Act(now_ns, wait);
     if (!trace_) {
       return vision_.HandOver(now_ns, wait, shell_->features());
     }
@@ -311,7 +310,7 @@ class Run {
     std::atomic<bool> done{false};
     hal::Status status;
     if (!WaitsForFrames()) {
-      plans_->Begin();
+      planner_->Begin();
     }
     std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
     std::jthread servo_thread([&] {      // joins even if the code below throws
@@ -377,7 +376,7 @@ class Run {
   std::unique_ptr<RunFiles> files_;
   SimVision vision_;  // its thread uses trace_, shell_ and files_
   std::unique_ptr<Verdict> verdict_;
-  std::optional<planning::PlanDesk> plans_;
+  std::optional<SimPlanner> planner_;
   std::optional<RunBeliefs> beliefs_;
   std::optional<TheoryRun> theory_;
   std::optional<LiveSession> live_;

@@ -38,6 +38,7 @@ struct RunOptions {
   bool report = true;         // also write films, log, report and the bench's picture
   bool pictures_if_failed = false;  // the camera's pictures only if the run does not reach its goal
   int renderers = kRenderers;       // pictures that are drawn at the same time
+  RendererPool* pool = nullptr;     // keeps renderers for the next run; must outlive the run; may be null
   std::string command;              // the command line, for the log; "" if none
   bool show_progress = true;
   std::filesystem::path trace;  // file for the timeline of all threads; empty: none

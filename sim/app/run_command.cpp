@@ -202,7 +202,7 @@ void AddRun(CLI::App& run, RunArguments& arguments) {
       run.add_flag("--open", arguments.page.open, "with --live: open the page in the browser")};
 }
 
-int RunCommand(const RunArguments& arguments) {
+int RunCommand(const RunArguments& arguments, RendererPool* pool) {
   std::signal(SIGPIPE, SIG_IGN);  // nobody reads the progress any more: the run goes on
   linux_rt::Interrupt interrupt;  // from here on, Ctrl-C ends the run early and writes all files
   std::vector<std::string> assignments = arguments.assignments;
@@ -224,6 +224,7 @@ int RunCommand(const RunArguments& arguments) {
   options.report = !arguments.no_report;
   options.pictures_if_failed = arguments.pictures == "failed";
   options.renderers = arguments.renderers;
+  options.pool = pool;
   options.trace = arguments.trace;
   options.command = arguments.command;
   options.interrupt = &interrupt;

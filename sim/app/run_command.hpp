@@ -48,7 +48,7 @@ struct RunArguments {
 
 // The arguments must outlive the parsing of `run`.
 void AddRun(CLI::App& run, RunArguments& arguments);
-// Returns the program's exit code. InputError: wrong options or input.
-int RunCommand(const RunArguments& arguments);
+// Returns the program's exit code. InputError: wrong options or input. `pool`: see RunOptions.
+int RunCommand(const RunArguments& arguments, RendererPool* pool = nullptr);
 
 }  // namespace fovea::sim

@@ -218,7 +218,9 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
   const Eigen::Matrix3d R_down = photographer.Down();
   {
     RenderScene scene = about.scene;
-    scene.bench.planes.insert(scene.bench.planes.begin(), board.plane);
+    auto bench = std::make_shared<Bench>(*scene.bench);
+    bench->planes.insert(bench->planes.begin(), board.plane);
+    scene.bench = std::move(bench);
     Optics optics(scene, pinhole, lens, Sampling::kFine);
     const int most = 4 * options.views;  // views to try
     for (int i = 0; i < most && static_cast<int>(taken.boards.size()) < options.views; ++i) {

@@ -195,6 +195,7 @@ hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noe
   frame.stride_bytes = config_.width_px * 3;
   frame.format = hal::PixelFormat::kBgr8;
   frame.pixels = handed_out_;
+  frame.maker = nullptr;
   return hal::Status::Ok();
 }
 

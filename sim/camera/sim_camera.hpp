@@ -19,6 +19,7 @@
 
 #include "fovea/hal/camera.hpp"
 #include "sim/camera/auto_exposure.hpp"
+#include "sim/camera/exposed_camera.hpp"
 #include "sim/camera/sensor.hpp"
 #include "sim/render/exposure.hpp"
 
@@ -44,21 +45,16 @@ struct SimCameraConfig {
   AutoExposureConfig auto_exposure{};
 };
 
-class SimCamera final : public hal::Camera {
+class SimCamera final : public ExposedCamera {
  public:
   // One worker thread for each painter.
   SimCamera(const SimCameraConfig& config, Sensor sensor, std::vector<Painter> painters);
-  ~SimCamera();
+  ~SimCamera() override;
 
-  // Called by the simulation's thread.
-  void Expose(Exposure exposure);
-  // Announces that no exposure will follow. Waiting exposures are still drawn and delivered; then Acquire
-  // returns kClosed. Called by any thread.
-  void Close();
-
-  [[nodiscard]] std::uint64_t lost() const;
-  // Reason for the camera's device fault; "" if there is none.
-  [[nodiscard]] std::string fault() const;
+  void Expose(Exposure exposure) override;
+  void Close() override;
+  [[nodiscard]] std::uint64_t lost() const override;
+  [[nodiscard]] std::string fault() const override;
 
  private:
   enum class Progress { kWaiting, kDrawing, kDone };

@@ -116,6 +116,7 @@ void OperatorDesk::PassFaults() {
   parts_.arm.SetFaults(faults.arm);
   parts_.clock.SetFault(faults.stall);
   parts_.vision.SetFaults(faults);
+  parts_.planner.SetFaults(faults.planner);
 }
 
 void OperatorDesk::Note(const hal::TickRecord& record) { servo_.Note(record); }

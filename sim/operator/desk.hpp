@@ -16,6 +16,7 @@
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/operator/bench_hands.hpp"
 #include "sim/operator/fault_desk.hpp"
+#include "sim/run/sim_planner.hpp"
 #include "sim/run/sim_vision.hpp"
 #include "sim/scenario/run_description.hpp"
 #include "sim/world/world.hpp"
@@ -28,6 +29,7 @@ struct DeskParts {
   World& world;
   FaultyArm& arm;
   SimVision& vision;
+  SimPlanner& planner;
   task::ServoLoop& loop;
   StallingClock& clock;
   desk::DeskReports reports;

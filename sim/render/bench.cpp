@@ -2,6 +2,7 @@
 #include "sim/render/bench.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 namespace fovea::sim {
 namespace {
@@ -116,6 +117,33 @@ void AddObstacle(const Eigen::AlignedBox3d& box, Bench& bench) {
   bench.boxes.push_back(box);
   bench.things.emplace_back().Append(MakeBox(size, bevel, kObstacleColour),
                                      At(centre.x(), centre.y(), centre.z()));
+}
+
+std::shared_ptr<const Bench> ShareBench(bool clutter, std::span<const Eigen::AlignedBox3d> obstacles) {
+  struct Made {
+    bool clutter = false;
+    std::weak_ptr<const Bench> bench;
+  };
+  static std::mutex mutex;
+  static std::vector<Made> all;
+  const std::lock_guard lock(mutex);
+  std::erase_if(all, [](const Made& made) { return made.bench.expired(); });
+  const auto is_same = [](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+    return a.min() == b.min() && a.max() == b.max();
+  };
+  for (const Made& made : all) {
+    std::shared_ptr<const Bench> bench = made.bench.lock();
+    if (bench && made.clutter == clutter && std::ranges::equal(bench->boxes, obstacles, is_same)) {
+      return bench;
+    }
+  }
+  Bench bench = MakeBench(clutter);
+  for (const Eigen::AlignedBox3d& box : obstacles) {
+    AddObstacle(box, bench);
+  }
+  auto shared = std::make_shared<const Bench>(std::move(bench));
+  all.push_back({clutter, shared});
+  return shared;
 }
 
 }  // namespace fovea::sim

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/render/mesh.hpp"
@@ -46,5 +48,9 @@ inline const Eigen::Vector3f kObstacleColour(0.20F, 0.34F, 0.42F);
 
 // Adds a box that the arm has to avoid.
 void AddObstacle(const Eigen::AlignedBox3d& box, Bench& bench);
+
+// MakeBench and AddObstacle for each of `obstacles`. While somebody holds such a bench, all who ask for the
+// same one get it: it takes 0.1 s to make, and renderers know it again. From any thread.
+std::shared_ptr<const Bench> ShareBench(bool clutter, std::span<const Eigen::AlignedBox3d> obstacles);
 
 }  // namespace fovea::sim

@@ -7,6 +7,9 @@
 #include <cstdint>
 #include <span>
 
+#include "sim/render/gl_program.hpp"
+#include "sim/render/pinhole.hpp"
+
 namespace fovea::sim {
 
 class Canvas {
@@ -19,6 +22,9 @@ class Canvas {
 
   // What is drawn next is drawn into it.
   void Bind() const;
+  // From here to the next clearing of the depth, only `areas` are drawn into: everything else counts as
+  // hidden. So the driver computes no colours there. Clear the depth before.
+  void DrawOnly(std::span<const PictureArea> areas) const;
   // Averages the samples, if there are several per pixel.
   void Resolve() const;
   // Reads `rows` rows from `begin_px` on into `rgba` [height * width * 4], top row first. Call Resolve
@@ -29,6 +35,9 @@ class Canvas {
   const int width_px_;
   const int height_px_;
   const bool multisampled_;
+  const GlProgram area_program_;
+  GLuint area_array_ = 0;
+  GLuint area_buffer_ = 0;
   GLuint frames_[2] = {0, 0};  // drawn into, resolved
   GLuint buffers_[3] = {0, 0, 0};
 };

@@ -25,6 +25,14 @@ struct Pinhole {
   [[nodiscard]] double V(const Eigen::Vector3d& p_C) const { return FocalV() * p_C.y() / p_C.z() + c_v_px; }
 };
 
+// A rectangle of a picture's pixels.
+struct PictureArea {
+  int left_px = 0;
+  int top_px = 0;
+  int width_px = 0;
+  int height_px = 0;
+};
+
 // A camera with horizontal field of view `hfov` [rad] and its optical axis in the middle of the picture.
 inline Pinhole MakePinhole(int width_px, int height_px, double hfov) {
   return {width_px, height_px, 0.5 * width_px / std::tan(0.5 * hfov), 0.5 * (width_px - 1),

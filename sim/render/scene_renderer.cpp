@@ -18,11 +18,11 @@
 #include "sim/render/gl_program.hpp"
 #include "sim/render/gpu_mesh.hpp"
 #include "sim/render/light.hpp"
-#include "sim/render/link_parts.hpp"
 #include "sim/render/outline_smoother.hpp"
 #include "sim/render/plane_painter.hpp"
 #include "sim/render/plate_painter.hpp"
 #include "sim/render/projection.hpp"
+#include "sim/render/scene_bodies.hpp"
 #include "sim/render/shaders.hpp"
 #include "sim/render/shadow_map.hpp"
 
@@ -34,31 +34,16 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-// A static thing, with its bounds to skip it when it is out of view.
-struct Thing {
-  std::unique_ptr<GpuMesh> mesh;
-  std::vector<MeshEdge> edges;
-  Bounds bounds;
-  Box box;
-};
-
-// A link's meshes for the picture and for its shadow.
-struct Link {
-  std::unique_ptr<GpuMesh> mesh;
-  std::unique_ptr<GpuMesh> shadow;
-  std::vector<MeshEdge> edges;
-  Bounds bounds;
-  std::vector<Box> shapes;  // tighter bounds: one box per solid
-};
-
 }  // namespace
 
 struct SceneRenderer::Impl {
   RenderScene scene;
   Pinhole pinhole;
-  RenderQuality quality;
+  const RenderQuality quality;
+  const int index;
   std::optional<SensorRows> sensor;
   EglContext egl;
+  std::string head;  // of programs that use the moving shadow
   std::unique_ptr<GlProgram> mesh_program, hem_program;
   std::unique_ptr<Canvas> canvas;
   std::unique_ptr<OutlineSmoother> smoother;
@@ -71,13 +56,12 @@ struct SceneRenderer::Impl {
   std::unique_ptr<GpuMesh> unit_ball;
   RenderWatch watch;
 
-  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index,
+  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int i,
        const std::optional<SensorRows>& r, std::span<const PaintedSurface> painted)
-      : scene(s), pinhole(p), quality(q), sensor(r), egl(index) {
+      : quality(q), index(i), egl(i) {
     egl.MakeCurrent();
-    const std::string head =
-        fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n{}",
-                    quality.shadow_taps, quality.shadow_spread, sensor ? "#define ROLLING\n" : "");
+    head = fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n{}",
+                       quality.shadow_taps, quality.shadow_spread, r ? "#define ROLLING\n" : "");
     const std::string light = shaders::kLight;
     const std::string lit = shaders::kShadow;
     mesh_program =
@@ -86,38 +70,33 @@ struct SceneRenderer::Impl {
         std::make_unique<GlProgram>(head + light + shaders::kHemVertex, head + lit + shaders::kHemFragment);
     smoother = std::make_unique<OutlineSmoother>();
     balls = std::make_unique<BallPainter>(head);
-    if (scene.has_eye && scene.target.kind != TargetShape::Kind::kBall) {
-      plate = std::make_unique<PlatePainter>(scene.target, head);
-    }
     shadow = std::make_unique<ShadowMap>(quality.shadow_map_px);
-    Upload();
-    canvas = std::make_unique<Canvas>(pinhole.width_px, pinhole.height_px, quality.samples);
+    unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
+    things = UploadThings(*s.bench);
+    Show(s, p, r);
     const auto draw_static = [this](const ShadowMap::DrawAt& draw) { DrawStaticCasters(draw); };
     shadow->DrawStatic(draw_static);
-    planes = std::make_unique<PlanePainter>(scene.bench.planes, head, draw_static, painted);
+    planes = std::make_unique<PlanePainter>(scene.bench->planes, head, draw_static, painted);
   }
 
   ~Impl() { egl.MakeCurrent(); }
 
-  void Upload() {
-    for (const Mesh& mesh : scene.bench.things) {
-      things.push_back({std::make_unique<GpuMesh>(mesh), FindEdges(mesh), FindBounds(mesh), FindBox(mesh)});
+  void Show(const RenderScene& s, const Pinhole& p, const std::optional<SensorRows>& rows) {
+    egl.MakeCurrent();
+    const bool same_size =
+        canvas != nullptr && p.width_px == pinhole.width_px && p.height_px == pinhole.height_px;
+    scene = s;
+    pinhole = p;
+    sensor = rows;
+    watch = {};
+    links = UploadLinks(scene.robot, scene.has_eye ? &scene.X_EC : nullptr);
+    plate.reset();
+    if (scene.has_eye && scene.target.kind != TargetShape::Kind::kBall) {
+      plate = std::make_unique<PlatePainter>(scene.target, head);
     }
-    for (std::size_t i = 0; i < scene.robot.links.size(); ++i) {
-      const SimLink& link = scene.robot.links[i];
-      const Isometry3f X_EC = scene.X_EC.cast<float>();
-      const Isometry3f* camera = scene.has_eye && static_cast<int>(i) == scene.robot.tip ? &X_EC : nullptr;
-      const std::vector<Mesh> seen = MakeParts(link, camera, Detail::kPicture);
-      const std::vector<Mesh> casters = MakeParts(link, camera, Detail::kShadow);
-      std::vector<Box> shapes;
-      for (std::size_t k = 0; k < link.visuals.size(); ++k) {
-        shapes.push_back(FindBox(casters[k]));
-      }
-      const Mesh mesh = Join(seen);
-      links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(Join(casters)),
-                       FindAllEdges(seen), FindBounds(mesh), std::move(shapes)});
+    if (!same_size) {
+      canvas = std::make_unique<Canvas>(pinhole.width_px, pinhole.height_px, quality.samples);
     }
-    unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
   }
 
   Ball Target(const Moment& moment) const {
@@ -145,7 +124,7 @@ struct SceneRenderer::Impl {
     for (const Thing& thing : things) {
       draw(*thing.mesh, Matrix4f::Identity());
     }
-    for (const Ball& ball : scene.bench.balls) {
+    for (const Ball& ball : scene.bench->balls) {
       DrawBallCaster(ball, draw);
     }
   }
@@ -176,7 +155,7 @@ struct SceneRenderer::Impl {
 
   // The box that contains everything visible in the picture `shown`; none if there is no such box.
   std::optional<Box> Seen(const Isometry3f& X_BC, const Pinhole& shown) const {
-    for (const TexturedPlane& plane : scene.bench.planes) {
+    for (const TexturedPlane& plane : scene.bench->planes) {
       if (const std::optional<Box> seen = SeenOver(plane, shown, X_BC); seen && quality.skip_hidden) {
         return seen;
       }
@@ -289,7 +268,7 @@ struct SceneRenderer::Impl {
       return ball;
     };
     std::vector<SeenBall> seen;
-    for (const Ball& ball : scene.bench.balls) {
+    for (const Ball& ball : scene.bench->balls) {
       seen.push_back(add([&ball](const Moment&) { return ball; }));
     }
     seen.push_back(add([this](const Moment& m) { return Target(m); }));
@@ -304,7 +283,7 @@ struct SceneRenderer::Impl {
 
   // With `band`: only its rows.
   void Draw(const Moment& moment, const Eigen::Isometry3d& X_BC_exact, const RowBand* band,
-            std::span<std::uint8_t> rgba) {
+            std::span<const PictureArea> areas, std::span<std::uint8_t> rgba) {
     egl.MakeCurrent();
     const int begin = band != nullptr ? band->begin_px : 0;
     const int rows = band != nullptr ? band->end_px - begin : pinhole.height_px;
@@ -323,6 +302,9 @@ struct SceneRenderer::Impl {
     glClearColor(0.45F * gain, 0.46F * gain, 0.47F * gain, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
+    if (!areas.empty()) {
+      canvas->DrawOnly(areas);
+    }
     glActiveTexture(GL_TEXTURE1);
     glBindTexture(GL_TEXTURE_2D, shadow->texture());
     glActiveTexture(GL_TEXTURE0);
@@ -375,6 +357,18 @@ SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, c
 }
 SceneRenderer::~SceneRenderer() = default;
 
+bool SceneRenderer::Fits(const RenderScene& scene, const RenderQuality& quality, int index,
+                         const std::optional<SensorRows>& rows) const {
+  return scene.bench == impl_->scene.bench && quality == impl_->quality && index == impl_->index &&
+         rows.has_value() == impl_->sensor.has_value();
+}
+
+void SceneRenderer::Show(const RenderScene& scene, const Pinhole& pinhole,
+                         const std::optional<SensorRows>& rows) {
+  impl_->Show(scene, pinhole, rows);
+  Release();
+}
+
 void SceneRenderer::CheckSize(std::span<const std::uint8_t> rgba) const {
   const auto needed = static_cast<std::size_t>(impl_->pinhole.width_px) *
                       static_cast<std::size_t>(impl_->pinhole.height_px) * 4;
@@ -383,18 +377,21 @@ void SceneRenderer::CheckSize(std::span<const std::uint8_t> rgba) const {
   }
 }
 
-void SceneRenderer::Draw(const Moment& moment, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba) {
+void SceneRenderer::Draw(const Moment& moment, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba,
+                         std::span<const PictureArea> areas) {
   CheckSize(rgba);
-  impl_->Draw(moment, X_BC, nullptr, rgba);
+  impl_->Draw(moment, X_BC, nullptr, areas, rgba);
 }
 
-void SceneRenderer::DrawBand(const RowBand& band, std::span<std::uint8_t> rgba) {
+void SceneRenderer::DrawBand(const RowBand& band, std::span<std::uint8_t> rgba,
+                             std::span<const PictureArea> areas) {
   CheckSize(rgba);
-  impl_->Draw(band.middle, band.middle.X_BC, &band, rgba);
+  impl_->Draw(band.middle, band.middle.X_BC, &band, areas, rgba);
 }
 
 void SceneRenderer::Watch(RenderWatch watch) { impl_->watch = std::move(watch); }
 void SceneRenderer::Release() { impl_->egl.Release(); }
 const Pinhole& SceneRenderer::pinhole() const { return impl_->pinhole; }
+int SceneRenderer::index() const { return impl_->index; }
 
 }  // namespace fovea::sim

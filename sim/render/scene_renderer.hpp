@@ -26,10 +26,12 @@ struct RenderQuality {
   int shadow_taps = 1;         // 1 to 16 samples; each averages four texels
   float shadow_spread = 1.6F;  // radius of the samples, in texels of the shadow map
   bool skip_hidden = true;     // does not draw what a table hides completely; the picture is the same
+
+  bool operator==(const RenderQuality&) const = default;
 };
 
 struct RenderScene {
-  Bench bench;
+  std::shared_ptr<const Bench> bench = std::make_shared<const Bench>();
   SimRobot robot;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();  // pose of the camera on the tip link
   bool has_eye = true;                                     // false: no camera housing and no target
@@ -54,19 +56,30 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  // Draws `moment` as seen from `X_BC` into `rgba` [height * width * 4], top row first.
-  void Draw(const Moment& moment, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba);
+  // True if Show can show this: the bench is the same object, and so are quality, index, and whether there
+  // are rows.
+  [[nodiscard]] bool Fits(const RenderScene& scene, const RenderQuality& quality, int index,
+                          const std::optional<SensorRows>& rows) const;
+  // Shows another scene that fits, by another camera: its pictures are those of a new renderer. Robot and
+  // target are made anew; bench, light on it, and programs are kept, which take most of a renderer's time.
+  void Show(const RenderScene& scene, const Pinhole& pinhole, const std::optional<SensorRows>& rows);
+
+  // Draws `moment` as seen from `X_BC` into `rgba` [height * width * 4], top row first. With `areas`: only
+  // their pixels are those of the picture, which takes less time.
+  void Draw(const Moment& moment, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba,
+            std::span<const PictureArea> areas = {});
 
   // Draws the rows of `band` into those of `rgba`, a whole picture; the others stay as they are. Each pixel
   // of a ball or a plate shows it at the time of its row. All else, shadows too, is as in the band's middle.
-  // Call it only on a renderer that knows the sensor's rows.
-  void DrawBand(const RowBand& band, std::span<std::uint8_t> rgba);
+  // Call it only on a renderer that knows the sensor's rows. `areas`: as for Draw.
+  void DrawBand(const RowBand& band, std::span<std::uint8_t> rgba, std::span<const PictureArea> areas = {});
 
   // Call it before the first Draw. Draw then finishes each part separately, which makes it a little slower.
   void Watch(RenderWatch watch);
 
   void Release();
   [[nodiscard]] const Pinhole& pinhole() const;
+  [[nodiscard]] int index() const;
   [[nodiscard]] const std::string& driver_name() const { return driver_name_; }
 
  private:

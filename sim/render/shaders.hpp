@@ -45,6 +45,16 @@ float Lit(vec3 s) {
 }
 )glsl";
 
+// Rectangles of pixels, as far away as can be: left, top, width, height.
+inline constexpr const char* kAreaVertex = R"glsl(
+layout(location = 0) in ivec4 a_area;
+uniform vec2 u_size_px;
+void main() {
+  ivec2 corner = a_area.xy + ivec2(gl_VertexID & 1, gl_VertexID >> 1) * a_area.zw;
+  gl_Position = vec4(2.0 * vec2(corner) / u_size_px - 1.0, 1.0, 1.0);
+}
+)glsl";
+
 inline constexpr const char* kMeshVertex = R"glsl(
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;

@@ -25,8 +25,8 @@ struct RunFilesConfig {
   int renderer_index = 0;           // the first index that the run itself does not use; see SceneRenderer
   bool may_drop = false;            // at real pace: the run does not wait for film or log
   bool replayable = true;           // the recorded inputs are those of the servo
-  std::string command;              // command line of the run; "" if none
-  log::LogTap tap;                  // gets each message of the log; empty: nobody does
+  std::string command{};            // command line of the run; "" if none
+  log::LogTap tap{};                // gets each message of the log; empty: nobody does
   bool open_ended = false;          // the run lasts until somebody ends it
 };
 

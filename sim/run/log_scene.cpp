@@ -96,7 +96,7 @@ foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
   foxglove::SceneUpdate update;
   for (const SimLink& link : scene.robot.links) {
     // Boxes are shapes of the arm's base, so that pages draw them as they draw the arm.
-    const bool carries_boxes = link.parent < 0 && !scene.bench.boxes.empty();
+    const bool carries_boxes = link.parent < 0 && !scene.bench->boxes.empty();
     if (link.visuals.empty() && !carries_boxes) {
       continue;
     }
@@ -105,7 +105,7 @@ foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
       AddShape(shape, entity);
     }
     if (carries_boxes) {
-      AddObstacles(scene.bench, entity);
+      AddObstacles(*scene.bench, entity);
     }
   }
   const Eigen::Vector3d table = Eigen::Vector3f(kTableWidth, kTableDepth, kTableThickness).cast<double>();

@@ -34,7 +34,7 @@ NetworkEye::NetworkEye(const RunDescription& about, World& world, const std::str
                        const std::string& serial, bool lockstep, WatchedCamera::Watcher watcher)
     : world_(world),
       lockstep_(lockstep),
-      eye_(about, kQueue),
+      eye_(about, {.queue = kQueue}),
       watched_(eye_.camera(), std::move(watcher)),
       faults_(Seeded(about.scenario.faults.frames, SeedOf(about.scenario, RandomStream::kFrameFaults))),
       stamps_(about.stamps),

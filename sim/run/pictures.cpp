@@ -26,6 +26,10 @@ std::string ToPng(const cv::Mat& image) {
 }
 
 void CopyPixels(const hal::Frame& frame, cv::Mat& bgr) {
+  if (frame.maker != nullptr) {
+    const hal::PixelArea whole{0, 0, frame.width_px, frame.height_px};
+    frame.maker->Make({&whole, 1});
+  }
   const cv::Mat view(frame.height_px, frame.width_px, CV_8UC3, const_cast<std::uint8_t*>(frame.pixels.data()),
                      static_cast<std::size_t>(frame.stride_bytes));
   view.copyTo(bgr);
@@ -37,13 +41,23 @@ void FrameKeeper::Keep(const hal::Frame& frame, const vision::Detection& detecti
   last_.stamp_ns = frame.stamp_ns;
   last_.detection = detection;
   last_.X_CO = X_CO;
-  CopyPixels(frame, last_.bgr);
+  in_parts_ = frame;
   if (frames_ == 0) {
     first_ = last_;
-    first_.bgr = last_.bgr.clone();
+    CopyPixels(frame, first_.bgr);
+  }
+  if (frame.maker == nullptr) {
+    CopyPixels(frame, last_.bgr);
   }
   ++frames_;
   detected_ += detection.found ? 1U : 0U;
+}
+
+const KeptFrame& FrameKeeper::last() {
+  if (in_parts_.maker != nullptr) {
+    CopyPixels(in_parts_, last_.bgr);
+  }
+  return last_;
 }
 
 std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,

@@ -23,7 +23,8 @@ struct KeptFrame {
   model::Pose X_CO;  // the target's true pose
 };
 
-// Keeps the first and the newest frame of a run. The vision thread calls Keep; read the rest after its end.
+// Keeps the first and the newest frame of a run. The vision thread calls Keep; read the rest after its end,
+// while the camera still exists.
 class FrameKeeper {
  public:
   // `X_CO`: the target's true pose.
@@ -31,11 +32,12 @@ class FrameKeeper {
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] std::uint64_t detected() const { return detected_; }
   [[nodiscard]] const KeptFrame& first() const { return first_; }
-  [[nodiscard]] const KeptFrame& last() const { return last_; }
+  [[nodiscard]] const KeptFrame& last();
 
  private:
   KeptFrame first_;
   KeptFrame last_;
+  hal::Frame in_parts_;  // the last one, if its pixels are made on demand
   std::uint64_t frames_ = 0;
   std::uint64_t detected_ = 0;
 };

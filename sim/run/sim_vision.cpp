@@ -23,9 +23,9 @@ SimVision::SimVision(const RunDescription& about, Observer observer)
 
 SimVision::~SimVision() { End(); }
 
-void SimVision::Open(std::size_t queue, RunTrace* trace, int renderers) {
-  trace_ = trace;
-  eye_.emplace(about_, queue, trace, renderers);
+void SimVision::Open(const EyeOptions& options) {
+  trace_ = options.trace;
+  eye_.emplace(about_, options);
 }
 
 void SimVision::Begin() {

@@ -34,9 +34,9 @@ class SimVision {
   SimVision(const SimVision&) = delete;
   SimVision& operator=(const SimVision&) = delete;
 
-  // Opens the camera; call it only if the scenario has one. `queue`: see SimCameraConfig. `trace`: may be
-  // null; must outlive this. InputError, std::runtime_error: this computer cannot draw it.
-  void Open(std::size_t queue, RunTrace* trace, int renderers = kRenderers);
+  // Opens the camera; call it only if the scenario has one. InputError, std::runtime_error: this computer
+  // cannot draw it.
+  void Open(const EyeOptions& options);
   // Starts the vision thread. Call it after Open.
   void Begin();
   // Closes the camera and waits for the vision thread, if it runs.

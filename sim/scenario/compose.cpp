@@ -181,10 +181,7 @@ CommandedMotion MakeMotion(const Scenario& s) {
 
 RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
   RenderScene scene;
-  scene.bench = MakeBench(s.target.clutter);
-  for (const Eigen::AlignedBox3d& box : BenchBoxes(s)) {
-    AddObstacle(box, scene.bench);
-  }
+  scene.bench = ShareBench(s.target.clutter, BenchBoxes(s));
   scene.robot = robot;
   scene.has_eye = s.camera.enabled;
   scene.X_EC = CameraMount(s);

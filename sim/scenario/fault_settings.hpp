@@ -11,6 +11,7 @@
 #include "sim/faults/faulty_detector.hpp"
 #include "sim/faults/frame_faults.hpp"
 #include "sim/faults/picture_faults.hpp"
+#include "sim/faults/planner_faults.hpp"
 #include "sim/faults/stalling_clock.hpp"
 
 namespace fovea::sim {
@@ -24,6 +25,7 @@ struct FaultSettings {
   ArmFaults arm;
   StallFault stall;
   TimeWindow nothing;  // no fault: a reference run
+  PlannerFaults planner;
 };
 
 // All lists, in the order of the keys.
@@ -38,6 +40,7 @@ void Fields(Visitor& v, Settings& f) {
   v.Window({"nothing", "s",
             "no fault: a reference run; summary.json lists what the servo noticed, for comparison"},
            f.nothing);
+  Fields(v, f.planner);
 }
 
 // The same faults with another seed.

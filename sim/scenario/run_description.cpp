@@ -70,6 +70,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
   run.lens = MakeScenarioLens(scenario);
   run.intrinsics.lens = {run.lens.k1, run.lens.k2, run.lens.p1, run.lens.p2, run.lens.k3};
   run.intrinsics.row_time = 1e-6 * scenario.camera.calibration.row_time_us;
+  run.reach = {scenario.vision.config.distance_min, scenario.vision.config.distance_max};
   CheckLens(scenario);
   run.servo = config::MakeServoConfig(
       scenario.servo, {run.robot.name, run.robot.model, config::MakeLoad(scenario.arm.load)},

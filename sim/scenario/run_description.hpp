@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/core/config/servo_config.hpp"
+#include "firmware/planning/eye_reach.hpp"
 #include "firmware/vision/intrinsics.hpp"
 #include "sim/camera/lens.hpp"
 #include "sim/render/pinhole.hpp"
@@ -33,6 +34,7 @@ struct RunDescription {
   Pinhole pinhole;
   Lens lens;
   vision::Intrinsics intrinsics;  // of the same camera, for the vision task
+  planning::EyeReach reach;       // of its detector
 
   // What is true: the same, except where the scenario's [truth] says otherwise.
   Scenario bench;

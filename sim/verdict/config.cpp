@@ -9,9 +9,9 @@ namespace fovea::sim {
 VerdictConfig MakeVerdictConfig(const RunDescription& about) {
   const config::GuardConfig& guard = about.servo.guard;
   VerdictConfig config;
-  config.barriers = {about.servo.arm,        guard.workspace_radius, guard.cartesian_speed,
-                     guard.rotation_speed,   guard.obstacles,        guard.hand,
-                     about.scene.bench.boxes};
+  config.barriers = {about.servo.arm,         guard.workspace_radius, guard.cartesian_speed,
+                     guard.rotation_speed,    guard.obstacles,        guard.hand,
+                     about.scene.bench->boxes};
   const int n = about.servo.arm.num_joints;
   config.stop.brake_after_s = about.servo.safety.brake_after_s;
   config.stop.ddq_max.resize(n);

@@ -40,6 +40,9 @@ void NoticeBook::Add(const hal::TickRecord& record) {
   } else if (record.intake != hal::Intake::kNone && record.intake != hal::Intake::kTaken) {
     Note("measurement_left_out");
   }
+  if (record.way.event == hal::PlanEvent::kLate) {
+    Note("plan_late");
+  }
 }
 
 void NoticeBook::Note(const std::string& what) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records what the servo noticed since a fault began: faults, modes, limits, missing measurements and states.
+// Records what the servo noticed since a fault began: faults, modes, limits, missing measurements, states and
+// plans.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,7 @@ namespace fovea::sim {
 //   missed_ticks          deadlines were missed
 //   target_not_found      the target was not found in a frame
 //   measurement_left_out  a measurement was rejected
+//   plan_late             no plan came in time: the visual law goes on alone
 // Times count the run's ticks, because the arm's own stamps may be faulty. Only one thread may use it.
 class NoticeBook {
  public:

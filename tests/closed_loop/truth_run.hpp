@@ -5,10 +5,11 @@
 
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
-#include "firmware/planning/plan_desk.hpp"
+#include "sim/run/sim_planner.hpp"
 #include "sim/scenario/run_description.hpp"
 #include "sim/scenario/world_config.hpp"
 #include "sim/verdict/config.hpp"
@@ -43,17 +44,17 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
     });
     hal::FeatureMailbox mailbox;
     sim::SimArm arm(world_);
-    planning::PlanDesk plans(about_.servo);
+    sim::SimPlanner planner(about_.servo, about_.reach, about_.scenario.faults.planner);
     sim::LockstepClock clock(world_, [&](std::int64_t now_ns) {
       while (!under_way_.empty() && under_way_.front().stamp_ns + latency_ns <= now_ns) {
         mailbox.Put(under_way_.front());
         under_way_.pop_front();
       }
-      plans.Act(now_ns);
+      planner.Act(now_ns, /*lockstep=*/true);
       return true;
     });
     task::ServoLoop loop(task_, arm, clock, mailbox, *this, *this);
-    loop.UsePlanner(plans.box());
+    loop.UsePlanner(planner.box());
     const hal::Status status = loop.Run(static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9));
     clock.RethrowFailure();
     if (!status.ok()) {
@@ -65,10 +66,16 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
     return summary;
   }
 
+  // What happened to plans, with the times [s].
+  [[nodiscard]] const std::vector<std::pair<double, hal::PlanEvent>>& plans() const { return plans_; }
+
  private:
   void Record(const hal::TickRecord& record) noexcept override {
     mode_ = record.mode;
     verdict_.AddRecord(record);
+    if (record.way.event != hal::PlanEvent::kNone) {
+      plans_.emplace_back(1e-9 * static_cast<double>(record.stamp_ns), record.way.event);
+    }
   }
   void Enter() noexcept override {}
   void Leave() noexcept override {}
@@ -80,6 +87,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
   sim::World world_;
   task::ServoTask task_;
   std::deque<hal::FeatureMeasurement> under_way_;
+  std::vector<std::pair<double, hal::PlanEvent>> plans_;
 };
 
 inline sim::Summary RunByTruth(const std::string& name, const std::vector<std::string>& assignments = {},

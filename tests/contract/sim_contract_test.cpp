@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "fovea/linux_rt/monotonic_clock.hpp"
+#include "sim/camera/on_demand_camera.hpp"
 #include "sim/camera/sim_camera.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/stalling_clock.hpp"
@@ -66,8 +67,22 @@ struct RealPaceClockFixture {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(RealPaceClock, ClockContract, RealPaceClockFixture);
 
+// A camera with `driver`, which takes numbered exposures.
+template <class Driven>
+struct ExposedFixture : Driven {
+  std::uint64_t next = 0;
+  hal::Camera& camera() { return this->driver; }
+  void Expose(std::int64_t stamp_ns) {
+    sim::Exposure exposure;
+    exposure.sequence = next++;
+    exposure.stamp_ns = stamp_ns;
+    this->driver.Expose(exposure);
+  }
+  void Close() { this->driver.Close(); }
+};
+
 // Two painters. Each fills the picture with the sequence number of the exposure.
-struct SimCameraFixture {
+struct SimCameraDriven {
   static sim::Painter Painter() {
     return {[](const sim::Exposure& exposure, std::span<std::uint8_t> rgba) {
               std::fill(rgba.begin(), rgba.end(), static_cast<std::uint8_t>(exposure.sequence));
@@ -77,17 +92,19 @@ struct SimCameraFixture {
   sim::SimCamera driver{{.width_px = 64, .height_px = 48, .exposure_ns = 1000, .queue = 16},
                         sim::Sensor({.read_sigma = 2.0}, 1),
                         {Painter(), Painter()}};
-  std::uint64_t next = 0;
-  hal::Camera& camera() { return driver; }
-  void Expose(std::int64_t stamp_ns) {
-    sim::Exposure exposure;
-    exposure.sequence = next++;
-    exposure.stamp_ns = stamp_ns;
-    driver.Expose(exposure);
-  }
-  void Close() { driver.Close(); }
 };
-INSTANTIATE_TYPED_TEST_SUITE_P(SimCamera, CameraContract, SimCameraFixture);
+INSTANTIATE_TYPED_TEST_SUITE_P(SimCamera, CameraContract, ExposedFixture<SimCameraDriven>);
+
+struct OnDemandCameraDriven {
+  sim::OnDemandCamera driver{
+      {.width_px = 64, .height_px = 48, .exposure_ns = 1000, .queue = 16},
+      sim::Sensor({.read_sigma = 2.0}, 1),
+      [](const sim::Exposure& exposure, std::span<const sim::PictureArea>, std::span<std::uint8_t> rgba) {
+        std::fill(rgba.begin(), rgba.end(), static_cast<std::uint8_t>(exposure.sequence));
+      },
+      [] {}};
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(OnDemandCamera, CameraContract, ExposedFixture<OnDemandCameraDriven>);
 
 }  // namespace
 }  // namespace fovea::test

@@ -261,15 +261,19 @@ async function checkUntouched(context) {
 // Each fault's button starts and stops its fault: both are in the log, and the ticks are, bit by bit, those of a scenario
 // with these faults. A fault acts from the tick after its request on.
 const TICK_S = 0.001;
-// Some faults act in their own run only: an earlier scene looks like the present one where nothing moves, and an arm that
-// a fault before has stopped does not feel its weight. The last run has all others.
+// Some faults act in their own run only: an earlier scene looks like the present one where nothing moves, an arm that
+// a fault before has stopped does not feel its weight, and a planner is asked when the target has jumped: there the fault
+// goes on until then. The last run has all others.
+const JUMP = { "target.motion": "jump", "target.jump": "[0.1, 0.1, 0.0]", "target.jump_s": "3" };
 const FAULT_RUNS = [
   { group: "earlier-scenes", scenario: "ball-moving", faults: ["freeze", "replay"] },
   { group: "body", scenario: "ball", faults: ["gravity", "load", "push", "torque_loss"] },
+  { group: "planner", scenario: "ball", faults: ["planner_loss"], keys: JUMP, until: 4 },
   { group: "rest", scenario: "ball" },
 ];
-async function checkFaults(context, { group, scenario, faults }) {
-  const run = await begin(scenario, `faults-${group}`);
+async function checkFaults(context, { group, scenario, faults, keys: scene = {}, until = 0 }) {
+  const set = Object.entries(scene).flatMap(([key, value]) => ["--set", `${key}=${value}`]);
+  const run = await begin(scenario, `faults-${group}`, set);
   const { page, said } = await open(context, run.url);
   await untilTime(page, 0.5);
   await setPace(page, SLOW); // the time between two clicks is then less of the run's, which is repeated often below
@@ -290,7 +294,7 @@ async function checkFaults(context, { group, scenario, faults }) {
       await row.locator("button").first().click();
       await page.locator(`#faults li[data-fault="${name}"]${state}`).waitFor();
       // In the run's own time, which a slow computer stretches: nine pictures or more, of which a fault may hit half.
-      if (state === ".active") await untilTime(page, (await runTime(page)) + SHOWN_S + 0.3);
+      if (state === ".active") await untilTime(page, Math.max(until, (await runTime(page)) + SHOWN_S + 0.3));
     }
   }
   await page.screenshot({ path: path.join(folder, `faults-${group}.png`) });
@@ -301,7 +305,7 @@ async function checkFaults(context, { group, scenario, faults }) {
   const { "/operator": touches } = await read(run.out, ["/operator"]);
   const timesOf = (pattern) =>
     touches.filter(({ data }) => pattern.test(data.text)).map(({ data }) => Number(data.stamp_ns) * 1e-9);
-  const settings = { "faults.push": "[0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0]" };
+  const settings = { ...scene, "faults.push": "[0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0]" };
   for (const name of names) {
     const started = timesOf(new RegExp(`^fault ${name}(,|$)`));
     const stopped = timesOf(new RegExp(`^fault ${name} stopped$`));

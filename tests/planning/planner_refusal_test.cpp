@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iostream>
 #include <limits>
 
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 #include "firmware/planning/planner.hpp"
 #include "tests/planning/starts.hpp"
 
@@ -119,6 +121,30 @@ TEST_F(PlannerRefusal, AGoalPastALimitIsNamedWithTheLimit) {
   config_.guard.obstacles.planes[0].distance = 0.35;  // the camera would have to go below it
   EXPECT_EQ(Answer(FromReady(config_, {0.0, 0.0, 0.5})).outcome, PlanOutcome::kGoalNotClear);
   EXPECT_EQ(plan_.blocker, hal::Limit::kObstacle);
+}
+
+// The lines of sight at the goal pass the box nearer than those of a plan do if they can.
+TEST_F(PlannerRefusal, AGoalWithABoxBesideTheTargetIsPlannedTo) {
+  config_.feature.p_CO_C_star = {0.0, 0.0, 0.30};
+  PlanRequest request = FromReady(config_, {0.03, 0.02, 0.60});
+  const double half_side = config_.feature.Outline().p_OP[0].x();
+  const model::Vec3 beside = request.X_BO.p + model::Vec3(std::fabs(half_side) + 0.02, 0.0, 0.0);
+  config_.guard.obstacles.num_boxes = 1;
+  config_.guard.obstacles.boxes[0] = {beside - model::Vec3(0.0, 0.08, 0.04),
+                                      beside + model::Vec3(0.05, 0.08, 0.01)};
+  EXPECT_TRUE(Answer(request).IsFound())
+      << trajectory::kPlanOutcomeWords[static_cast<std::size_t>(plan_.outcome)];
+  trajectory::Reference end;
+  plan_.At(plan_.Duration(), end);
+  model::ArmPoses poses;
+  model::ComputePoses(config_.arm, end.q, poses);
+  const double room =
+      barriers::ClearanceOfSight({poses, barriers::PlaceBodies(config_.arm, poses), poses.X_BE * config_.X_EC,
+                                  config_.feature.Outline(), request.X_BO, config_.guard.obstacles}) -
+      config_.guard.sight_clearance;
+  std::cout << "lines of sight keep " << 1e3 * room << " mm more than safety.sight_clearance\n";
+  EXPECT_GT(room, 0.003 - 1e-6);
+  EXPECT_LT(room, 0.025) << "a plan with the usual room would do";
 }
 
 // A wall or a beam beside the hand, which has to get to its other side.

@@ -122,7 +122,7 @@ class BenchFaults(unittest.TestCase):
 
     def test_fault_that_serve_cannot_inject_is_refused(self):
         for key in ("wrong_detection", "nan_detection", "encoder_stuck", "encoder_noise", "encoder_nan",
-                    "packet_loss", "clock_jump", "deadline_miss"):
+                    "packet_loss", "clock_jump", "deadline_miss", "planner_loss"):
             done = subprocess.run([served.PROGRAM, "serve", "ball", "--fci-port", "0", "--camera-serial", "", "--set",
                                    f"faults.{key}_s=[1,2]"], timeout=20, capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, key)

@@ -133,7 +133,7 @@ class Pass {
     task_.Restore(state);
     loop_.UseMotion(director_);
     if (options.camera) {
-      eye_ = std::make_unique<sim::Eye>(about, 1024);
+      eye_ = std::make_unique<sim::Eye>(about, sim::EyeOptions{.queue = 1024});
     }
     memory_.reserve(kMemorySamples + 2);
     heap_.reserve(kMemorySamples + 2);

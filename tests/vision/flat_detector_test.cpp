@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 
+#include "firmware/core/features/triangle.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "firmware/vision/pose/flat_corners.hpp"
@@ -99,6 +100,41 @@ Errors MeasurePoses(hal::FeatureKind kind, double most_tilt, double most_turn, i
             << std::sqrt(errors.mm2) << " mm, " << std::sqrt(errors.deg2) << " deg rms, chi2/6 "
             << errors.chi2 << "\n";
   return errors;
+}
+
+// Corners as acute as a triangle has them that is seen obliquely. Below 15 degrees the tip is blurred.
+TEST(FlatDetectorTest, AcuteTrianglesAreFound) {
+  DetectorConfig config = ConfigOf(hal::FeatureKind::kTriangle);
+  for (const double angle_deg : {30.0, 20.0, 15.0}) {
+    const double half = 0.12 * std::tan(0.5 * angle_deg / 57.29578);
+    config.corners = features::MakeTriangle({-0.06, 0.0, 0.06, -half, 0.06, half});
+    const Vec3 tip = config.corners.corners[0];
+    int found = 0;
+    double worst_px = 0.0;
+    constexpr int kPictures = 12;
+    for (int i = 0; i < kPictures; ++i) {
+      model::Pose X_CO;
+      X_CO.p = {0.0, 0.0, 0.35};
+      X_CO.R = model::RotationOf(Vec3(0.0, 0.0, 0.5 * i));
+      TargetDetector detector(config);
+      const Detection d =
+          detector.Detect(bench::Draw(SceneOf(config, X_CO, 3.0, static_cast<unsigned>(i + 1))));
+      found += d.found ? 1 : 0;
+      const Vec3 p = X_CO * tip;
+      const double u = config.intrinsics.U(p);
+      const double v = config.intrinsics.V(p);
+      double nearest = 1e9;
+      for (int k = 0; k < d.corner_count; ++k) {
+        const ImagePoint& corner = d.corner[static_cast<std::size_t>(k)];
+        nearest = std::min(nearest, std::hypot(corner.u_px - u, corner.v_px - v));
+      }
+      worst_px = d.found ? std::max(worst_px, nearest) : worst_px;
+    }
+    std::cout << angle_deg << " deg: found " << found << " of " << kPictures << ", tip off by at most "
+              << worst_px << " px\n";
+    EXPECT_EQ(found, kPictures);
+    EXPECT_LT(worst_px, 0.5);
+  }
 }
 
 TEST(FlatDetectorTest, SquarePosesAreAccurate) {

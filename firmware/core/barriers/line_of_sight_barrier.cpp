@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/core/barriers/obstacle.hpp"
@@ -20,14 +22,47 @@ struct NearSight {
   int body = 0;               // the link; 0: the base or a box, which do not move
 };
 
+// The links' distances from the line of sight to O's origin. All lines of sight begin at the camera, so none
+// is further from this one than its end is from O: most links are too far from all of them.
+struct Links {
+  std::array<double, model::ArmShape::kMostBodies> away2{};  // of the links' middles, squared [m^2]
+  double spread = 0.0;                                       // of the lines' ends about O [m]
+
+  explicit Links(const Sight& sight) noexcept {
+    const Vec3 line = sight.X_BO.p - sight.X_BC.p;
+    const double length2 = line.squaredNorm();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sight.bodies.size); ++i) {
+      const Vec3 middle = sight.bodies.body[i].middle - sight.X_BC.p;
+      const double s = length2 > 0.0 ? std::clamp(middle.dot(line) / length2, 0.0, 1.0) : 0.0;
+      away2[i] = (middle - s * line).squaredNorm();
+    }
+    double spread2 = 0.0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
+      spread2 = std::max(spread2, sight.outline.p_OP[k].squaredNorm());
+    }
+    spread = std::sqrt(spread2);
+  }
+
+  // True if no line of sight comes nearer to link `i`, whose ball reaches so far, than `gap`.
+  [[nodiscard]] bool AreFurther(std::size_t i, double reach, double gap) const noexcept {
+    const double apart = gap + reach + spread;
+    return apart > 0.0 && away2[i] > apart * apart;
+  }
+};
+
 // Over all links, boxes and lines of sight.
 NearSight NearestOf(const Sight& sight) noexcept {
   constexpr double kShare = 0.9;  // of a line, from the camera, that boxes must keep clear
+  const Links links(sight);
   NearSight nearest;
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
     const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];
     for (int i = 0; i + model::ArmShape::kNeighbours + 1 < sight.bodies.size; ++i) {
-      const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(i)];
+      const auto body = static_cast<std::size_t>(i);
+      const PlacedCapsule& link = sight.bodies.body[body];
+      if (links.AreFurther(body, link.reach, nearest.gap)) {
+        continue;
+      }
       const model::SegmentPair axes = model::NearestOfSegments(sight.X_BC.p, p_BP, link.p_BA, link.p_BB);
       const double gap = axes.distance - link.radius;
       if (gap < nearest.gap) {
@@ -65,12 +100,8 @@ Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight
   // d/dt distance = apart . (v_sight - v_link); the line of sight pivots about the fixed target.
   const Vec3 apart_C = sight.X_BC.R.transpose() * apart;
   barrier.gradient = (1.0 - nearest.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
-  if (nearest.body > 0) {
-    model::LinearJacobian J_link;
-    model::ComputeLinearJacobian(config.arm, sight.poses, nearest.p_BL, J_link);
-    for (int i = 0; i < nearest.body; ++i) {
-      barrier.gradient[i] -= J_link.col(i).dot(apart);
-    }
+  for (int i = 0; i < nearest.body; ++i) {
+    barrier.gradient[i] -= model::PointVelocity(config.arm, sight.poses, i, nearest.p_BL).dot(apart);
   }
   barrier.name = hal::Limit::kFieldOfView;
   barrier.value = nearest.gap;

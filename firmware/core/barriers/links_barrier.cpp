@@ -106,11 +106,9 @@ Barrier LinksBarrier(const config::ServoConfig& config, int i, const model::ArmP
   if (!std::isfinite(nearest.clearance.distance)) {
     return barrier;
   }
-  model::LinearJacobian J;
-  model::ComputeLinearJacobian(arm, poses, nearest.p_BP, J);
   barrier.gradient = model::VecN::Zero(arm.num_joints);
   for (int k = 0; k < nearest.body; ++k) {
-    barrier.gradient[k] = J.col(k).dot(nearest.clearance.away);
+    barrier.gradient[k] = model::PointVelocity(arm, poses, k, nearest.p_BP).dot(nearest.clearance.away);
   }
   barrier.name = hal::Limit::kObstacle;
   barrier.value = nearest.clearance.distance;

@@ -58,14 +58,11 @@ Barrier SelfClearanceBarrier(const config::ServoConfig& config, const model::Arm
   // d/dt gap = apart . (v_first - v_second).
   const Vec3 apart = (nearest.axes.on_first - nearest.axes.on_second) / nearest.axes.distance;
   barrier.gradient = model::VecN::Zero(arm.num_joints);
-  model::LinearJacobian J;
-  model::ComputeLinearJacobian(arm, poses, nearest.axes.on_first, J);
   for (int i = 0; i < nearest.pair.far; ++i) {
-    barrier.gradient[i] = J.col(i).dot(apart);
+    barrier.gradient[i] = model::PointVelocity(arm, poses, i, nearest.axes.on_first).dot(apart);
   }
-  model::ComputeLinearJacobian(arm, poses, nearest.axes.on_second, J);
   for (int i = 0; i < nearest.pair.near; ++i) {
-    barrier.gradient[i] -= J.col(i).dot(apart);
+    barrier.gradient[i] -= model::PointVelocity(arm, poses, i, nearest.axes.on_second).dot(apart);
   }
   barrier.name = hal::Limit::kObstacle;
   barrier.value = nearest.gap;

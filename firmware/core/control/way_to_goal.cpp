@@ -26,10 +26,15 @@ constexpr double kIdleS = 0.4;          // without progress: the law is stalled
 constexpr double kNearer = 0.8;         // progress: the distance falls to this share
 constexpr double kThereM = 0.0015;      // the law alone reaches a goal this near
 constexpr double kThereRad = 0.006;
-constexpr int kTriesOfSure = 2;     // count more if the planner knows of no posture
-constexpr int kMostTries = 6;       // for the same goal
-constexpr double kWaitS = 1.5;      // for a plan
-constexpr double kWaitLateS = 0.1;  // if the last one did not come in time
+constexpr int kTriesOfSure = 2;                       // count more if the planner knows of no posture
+constexpr int kMostTries = 6;                         // for the same goal
+constexpr double kCareful = 0.25;                     // pace of the law while it tells poses apart,
+constexpr double kCarefulS = 1.5;                     // for so long at most
+constexpr double kSlowingS = 0.4;                     // from the law's full pace to rest
+constexpr double kSlow = 0.1;                         // a joint this slow is stopped at once [rad/s, m/s]
+constexpr double kWaitS = 1.5;                        // for a plan
+constexpr double kWaitLateS = 0.1;                    // if the last one did not come in time
+constexpr std::int64_t kAgainNs = hal::kNsPerSecond;  // between new plans because the target moved
 
 // When a plan is followed.
 constexpr double kSameStart = 1e-9;   // [rad]
@@ -71,6 +76,12 @@ bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept
   return sight.v_BO.norm() + turn > kMovingTarget;
 }
 
+// A moving target is left to the law. One that leaves its plans again and again gets a new one at a bounded
+// rate.
+bool MayPlanFor(const config::ServoConfig& config, const WaySight& sight, const WayToGoal& way) noexcept {
+  return !IsMoving(config, sight) && sight.now_ns >= way.again_ns;
+}
+
 void NoteIdle(const WaySight& sight, const Off& off, WayToGoal& way) noexcept {
   if (off.turn < kThereRad && off.shift < kThereM) {
     way.stalled_ns = 0;
@@ -91,9 +102,11 @@ void Change(Way to, PlanEvent event, std::int64_t now_ns, WayToGoal& way) noexce
   way.stalled_ns = 0;
   way.held_ns = 0;
   way.least_off = HUGE_VAL;
+  way.pace = to == Way::kAwaitPlan ? way.pace : 1.0;
 }
 
 void GoOnByLaw(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  way.since_ns = way.since_ns == 0 ? sight.now_ns : way.since_ns;
   if (!way.turn_known || (!sight.is_told_apart && !way.keeps_posture)) {
     way.turn = features::NearestTurn(config.feature, sight.X_CO.R);
     way.turn_known = true;
@@ -105,12 +118,19 @@ void GoOnByLaw(const config::ServoConfig& config, const WaySight& sight, WayToGo
   NoteIdle(sight, off, way);
   way.is_fresh = way.is_fresh || off.Both() < kNear;
   way.is_new_goal = way.is_new_goal || off.Both() < kNear;
-  if (!sight.is_told_apart || way.note.tries >= kMostTries) {
-    return;  // the pose may be the wrong one, and the law's motion tells them apart; or no plan helps
-  }
-  const bool far = way.is_fresh && off.Both() > kFar && !IsMoving(config, sight);
-  if (far || IsLonger(way.stalled_ns, kIdleS)) {
-    way.note.tries = far && way.is_new_goal ? 0 : way.note.tries;
+  const bool far = way.is_fresh && off.Both() > kFar && MayPlanFor(config, sight, way);
+  const bool may_plan = way.note.tries < kMostTries;
+  // While several poses fit, the law's motion has to tell them apart. It may end soon, so it is slow.
+  const bool is_careful =
+      may_plan && far && !sight.is_told_apart && !IsLonger(sight.now_ns - way.since_ns, kCarefulS);
+  way.pace = is_careful ? kCareful : std::min(way.pace + hal::kTickPeriodS / kSlowingS, 1.0);
+  // If limits stop the law, a plan's motion has to tell the poses apart.
+  if (may_plan && ((far && sight.is_told_apart) || IsLonger(way.stalled_ns, kIdleS))) {
+    if (far && way.is_new_goal) {
+      way.note.tries = 0;
+    } else if (far) {
+      way.again_ns = sight.now_ns + kAgainNs;
+    }
     way.is_new_goal = false;
     Change(Way::kAwaitPlan, PlanEvent::kNone, sight.now_ns, way);
   }
@@ -163,6 +183,7 @@ void Take(const config::ServoConfig& config, const Plan& plan, const WaySight& s
 void AwaitPlan(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
                WayToGoal& way) noexcept {
   if (way.asked_ns < 0) {
+    way.pace = std::max(way.pace - hal::kTickPeriodS / kSlowingS, 0.0);
     if (sight.reference.IsAtRest()) {
       way.asked_ns = sight.now_ns;
       way.is_fresh = false;
@@ -219,7 +240,10 @@ void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const 
   const model::Vec6 twist = GoalTwist(config, sight, plan, poses.X_BE * config.X_EC);
   const model::VecN shift = way.pull.transpose().lazyProduct(twist);
   if (IsElsewhere(config, sight, plan) || !(shift.lpNorm<Eigen::Infinity>() < kShiftMost)) {
-    Change(IsMoving(config, sight) ? Way::kLaw : NextWay(way), PlanEvent::kTargetMoved, sight.now_ns, way);
+    const bool at_once = MayPlanFor(config, sight, way);
+    Change(at_once ? NextWay(way) : Way::kLaw, PlanEvent::kTargetMoved, sight.now_ns, way);
+    way.is_fresh = true;
+    way.again_ns = at_once ? sight.now_ns + kAgainNs : way.again_ns;
     return;
   }
   const double trust_s = !sight.is_seen || sight.is_eye_suspected ? -kTrustS
@@ -274,6 +298,12 @@ void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool i
   step.task.dq_0.setZero(at.q.size());
   step.task.weight.setOnes(at.q.size());
   step.ddq = pace * at.ddq;
+}
+
+double SlowingPace(const WayToGoal& way, const trajectory::Reference& reference) noexcept {
+  const bool slows = way.note.way == hal::Way::kAwaitPlan && way.asked_ns < 0 &&
+                     reference.dq.lpNorm<Eigen::Infinity>() >= kSlow;
+  return slows ? way.pace : 0.0;
 }
 
 bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept {

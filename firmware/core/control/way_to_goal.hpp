@@ -8,11 +8,13 @@
 //   law -> await plan -> plan -> law         near the goal, at its end
 //             |           |
 //             |           +-> await plan     limits hold it up, or the target is elsewhere
+//             |           +-> law            the target is elsewhere, and moves or was elsewhere a moment ago
 //             +-> law                        no plan in time, none found, or not for this start and target
 //
 // The servo also asks if limits stop the law. After some tries for the same goal it stays with the law. A
-// plan is for the target as it was estimated at the start. While the arm follows it, the plan's end moves
-// with the estimate: the joints' path is shifted by a share that grows from 0 to 1,
+// target that keeps moving gets at most one new plan a second. A plan is for the target as it was estimated
+// at the start. While the arm follows it, the plan's end moves with the estimate: the joints' path is shifted
+// by a share that grows from 0 to 1,
 //
 //   q(t) = plan(t) + SmoothStep(t / T) J_C^+(q_end) xi,
 //
@@ -46,6 +48,8 @@ struct WayToGoal {
   std::int64_t asked_ns = -1;   // awaiting a plan: when it was asked for; -1: the arm still stops
   std::int64_t stalled_ns = 0;  // law: time with active limits less time without, since the last progress
   std::int64_t held_ns = 0;     // plan: time held up less time not held up
+  std::int64_t again_ns = 0;    // no new plan is asked for before because the target moved
+  double pace = 1.0;            // law: share of its speed
   double least_off = HUGE_VAL;  // law: smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
   double t = 0.0;               // plan: time along it [s]
   double trust = 0.0;           // in the eye, 0 to 1: how fast a plan is followed
@@ -88,6 +92,11 @@ struct PlanStep {
 // Real-time: yes.
 void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& reference, bool is_seen,
                 WayToGoal& way, PlanStep& step) noexcept;
+
+// The law's pace with which an arm that awaits a plan comes to rest; 0: it stops at once, because it is slow.
+// A stop of the joints would end the law's motion, but not keep the target in the picture: a turn of the
+// camera that makes up for its shift may end later. Real-time: yes.
+[[nodiscard]] double SlowingPace(const WayToGoal& way, const trajectory::Reference& reference) noexcept;
 
 // True if limits hold the arm up on its plan. Real-time: yes.
 [[nodiscard]] bool IsHeldUp(const WayToGoal& way) noexcept;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "firmware/core/estimate/measurement_doubt.hpp"
 #include "firmware/core/features/target_feature.hpp"
 #include "firmware/core/model/types.hpp"
 
@@ -20,7 +21,7 @@ struct CornerView {
   model::Pose X_CB;
   model::Vec6 V_BC_C = model::Vec6::Zero();  // the camera's twist then [m/s, rad/s]
   features::SeenCorners seen;
-  model::Mat6 doubt = model::Mat6::Zero();  // uncertainty of X_CB, for the gate: measurement_doubt.hpp
+  MeasurementDoubt* doubt = nullptr;  // uncertainty of X_CB, for the gate; null: none
 };
 
 // d(corners) / d(position, turn), both in axes of B: [2 n x 6].

@@ -21,17 +21,43 @@
 // A wrong stamp is a state of the filters (stamp_error.hpp).
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/estimate/joint_history.hpp"
 #include "firmware/core/model/kinematics.hpp"
 
 namespace fovea::estimate {
 
-// Covariance of the camera's pose as a twist of C, [v; w] [m, rad], for a measurement at `stamp_ns` of a
-// target at `p_CO_C` [m], when the camera was at `X_BC`. Zero if the history does not reach back. Real-time:
-// yes.
-[[nodiscard]] model::Mat6 MeasurementDoubt(const config::ServoConfig& config, const JointHistory& history,
-                                           std::int64_t stamp_ns, const model::Pose& X_BC,
-                                           const model::Vec3& p_CO_C) noexcept;
+// Computed when it is first asked for: most measurements pass the gate without it.
+class MeasurementDoubt {
+ public:
+  // For a measurement at `stamp_ns` of a target at `p_CO_C` [m], when the camera was at `X_BC`. `config` and
+  // `history` must outlive the object.
+  MeasurementDoubt(const config::ServoConfig& config, const JointHistory& history, std::int64_t stamp_ns,
+                   const model::Pose& X_BC, const model::Vec3& p_CO_C) noexcept
+      : config_(config), history_(history), stamp_ns_(stamp_ns), X_BC_(X_BC), p_CO_C_(p_CO_C) {}
+
+  // Covariance of the camera's pose as a twist of C, [v; w] [m, rad]. Zero if the history does not reach
+  // back. Real-time: yes.
+  [[nodiscard]] const model::Mat6& OfCamera() noexcept;
+  // The covariance that it gives a target at `p_CO_C`, in axes of B [m^2]. Real-time: yes.
+  [[nodiscard]] model::Mat3 OfPlace(const model::Vec3& p_CO_C) noexcept;
+
+ private:
+  [[nodiscard]] model::Mat6 Compute() const noexcept;
+
+  const config::ServoConfig& config_;
+  const JointHistory& history_;
+  std::int64_t stamp_ns_;
+  model::Pose X_BC_;
+  model::Vec3 p_CO_C_;
+  std::optional<model::Mat6> cov_;
+};
+
+// How the camera's twist [v; w] moves a target at `p_CO_C`, seen from B in axes of C: v + w x p_CO_C.
+using PlaceSlope = Eigen::Matrix<double, 3, 6>;
+[[nodiscard]] PlaceSlope PlaceByCamera(const model::Vec3& p_CO_C) noexcept;
 
 }  // namespace fovea::estimate

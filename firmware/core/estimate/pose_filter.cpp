@@ -28,10 +28,49 @@ using Rows6 = CornerSlope;
 using Gain = Eigen::Matrix<double, Eigen::Dynamic, PoseFilter::kDim, Eigen::ColMajor, 2 * Polygon::kMost,
                            PoseFilter::kDim>;
 
+// Adds a b^T to the lower half of `S`, entry by entry; the Cholesky factor reads no other half. `a`, `b` [n x
+// k].
+template <typename Left, typename Right>
+void AddLower(const Left& a, const Right& b, SeenCorners::Covariance& S) noexcept {
+  for (Eigen::Index j = 0; j < S.cols(); ++j) {
+    for (Eigen::Index i = j; i < S.rows(); ++i) {
+      S(i, j) += a.row(i).cwiseProduct(b.row(j)).sum();
+    }
+  }
+}
+
+// P -= Y^T Y, and P = (P + P^T) / 2. The product is symmetric to the last bit; P is not quite. Two columns by
+// two: each entry of Y is loaded half as often.
+void Reduce(const Gain& Y, Eigen::Matrix<double, PoseFilter::kDim, PoseFilter::kDim>& P) noexcept {
+  const auto subtract = [&P](Eigen::Index i, Eigen::Index j, double product) {
+    P(i, j) = P(j, i) = 0.5 * ((P(i, j) - product) + (P(j, i) - product));
+  };
+  for (Eigen::Index j = 0; j < PoseFilter::kDim; j += 2) {
+    for (Eigen::Index i = j; i < PoseFilter::kDim; i += 2) {
+      double sum_00 = Y(0, i) * Y(0, j);
+      double sum_10 = Y(0, i + 1) * Y(0, j);
+      double sum_01 = Y(0, i) * Y(0, j + 1);
+      double sum_11 = Y(0, i + 1) * Y(0, j + 1);
+      for (Eigen::Index k = 1; k < Y.rows(); ++k) {
+        sum_00 += Y(k, i) * Y(k, j);
+        sum_10 += Y(k, i + 1) * Y(k, j);
+        sum_01 += Y(k, i) * Y(k, j + 1);
+        sum_11 += Y(k, i + 1) * Y(k, j + 1);
+      }
+      subtract(i, j, sum_00);
+      subtract(i + 1, j, sum_10);
+      subtract(i + 1, j + 1, sum_11);
+      if (i != j) {
+        subtract(i, j + 1, sum_01);
+      }
+    }
+  }
+}
+
 // The expected corners of a pose with the covariance `P`: their mean, their slope `H` over the pose's errors,
-// and the covariance `bent` that this linear slope does not explain. Sigma points with P's own covariance
-// give them (Julier and Uhlmann, Unscented filtering and nonlinear estimation, 2004), because near the
-// cylinder through a triangle's corners its poses lie on a fold.
+// and the covariance `bent` (its lower half) that this linear slope does not explain. Sigma points with P's
+// own covariance give them (Julier and Uhlmann, Unscented filtering and nonlinear estimation, 2004), because
+// near the cylinder through a triangle's corners its poses lie on a fold.
 bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
                   const model::Mat6& P, SeenCorners::Vector& mean, Rows6& H,
                   SeenCorners::Covariance& bent) noexcept {
@@ -42,14 +81,18 @@ bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::
   model::FactorCholesky(L);
   L.triangularView<Eigen::StrictlyUpper>().setZero();
   std::array<SeenCorners::Vector, 12> at;
-  mean.setZero(size);
-  for (int i = 0; i < 12; ++i) {
-    const model::Vec6 off = (i < 6 ? kFar : -kFar) * L.col(i % 6);
-    const model::Pose moved{model::RotationOf(off.tail<3>()) * X_BO.R, X_BO.p + off.head<3>()};
-    if (!ExpectCorners(polygon, X_CB, moved, at[static_cast<std::size_t>(i)])) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    const model::Vec6 off = kFar * L.col(static_cast<Eigen::Index>(i));
+    const Mat3 turn = model::RotationOf(off.tail<3>());
+    const model::Pose ahead{turn * X_BO.R, X_BO.p + off.head<3>()};
+    const model::Pose behind{turn.transpose() * X_BO.R, X_BO.p - off.head<3>()};
+    if (!ExpectCorners(polygon, X_CB, ahead, at[i]) || !ExpectCorners(polygon, X_CB, behind, at[i + 6])) {
       return false;
     }
-    mean += at[static_cast<std::size_t>(i)] / 12.0;
+  }
+  mean.setZero(size);
+  for (const SeenCorners::Vector& corners : at) {
+    mean += corners / 12.0;
   }
   H.resize(size, 6);
   bent.setZero(size, size);
@@ -57,7 +100,11 @@ bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::
     const SeenCorners::Vector slope = (at[i] - at[i + 6]) / (2.0 * kFar);
     const SeenCorners::Vector bow = 0.5 * (at[i] + at[i + 6]) - mean;
     H.col(static_cast<Eigen::Index>(i)) = slope;
-    bent += bow.lazyProduct(bow.transpose()) / 6.0;
+    for (Eigen::Index c = 0; c < size; ++c) {
+      for (Eigen::Index r = c; r < size; ++r) {
+        bent(r, c) += bow[r] * bow[c] / 6.0;
+      }
+    }
   }
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 2 * Polygon::kMost> turned = H.transpose();
   model::SolveLowerTransposed(L, turned);
@@ -89,11 +136,11 @@ CornerSlope SlopeByRates(const CornerView& view, const SeenCorners::Vector& xy, 
   return H;
 }
 
-// Adds the noise of the camera's own pose.
+// Adds the noise of the camera's own pose to the lower half of `cov`.
 void AddCameraNoise(CornerSlope by_camera, SeenCorners::Covariance& cov) noexcept {
   by_camera.leftCols<3>() *= kCameraShiftSigma;
   by_camera.rightCols<3>() *= kCameraTurnSigma;
-  cov += by_camera.lazyProduct(by_camera.transpose());
+  AddLower(by_camera, by_camera, cov);
 }
 
 // The squared distance of `innovation` in standard deviations of `S`.
@@ -261,17 +308,18 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   if (view.row_time > 0.0) {
     innovation -= by_rates.leftCols<3>() * next.v_BO_B + by_rates.rightCols<3>() * next.w_BO_B;
   }
-  // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y.
+  // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y. Of S, only the lower half
+  // is computed.
   Gain Y = H.lazyProduct(next.P.topRows<6>());
   Y += by_late.lazyProduct(next.P.row(F::kLate));
   if (view.row_time > 0.0) {
     Y += by_rates.leftCols<3>().lazyProduct(next.P.middleRows<3>(F::kVelocity));
     Y += by_rates.rightCols<3>().lazyProduct(next.P.middleRows<3>(F::kTurnRate));
-    S += Y.middleCols<3>(F::kVelocity).lazyProduct(by_rates.leftCols<3>().transpose());
-    S += Y.middleCols<3>(F::kTurnRate).lazyProduct(by_rates.rightCols<3>().transpose());
+    AddLower(Y.middleCols<3>(F::kVelocity), by_rates.leftCols<3>(), S);
+    AddLower(Y.middleCols<3>(F::kTurnRate), by_rates.rightCols<3>(), S);
   }
-  S += Y.leftCols<6>().lazyProduct(H.transpose());
-  S += Y.col(F::kLate).lazyProduct(by_late.transpose());
+  AddLower(Y.leftCols<6>(), H, S);
+  AddLower(Y.col(F::kLate), by_late, S);
   S += bent;
   const double gate2 = config.gate_sigma * config.gate_sigma;
   const SeenCorners::Covariance S_noise = S;
@@ -285,7 +333,9 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   }
   distance2 = off;
   if (off > gate2) {
-    const CornerSlope doubted = by_camera.lazyProduct(view.doubt);
+    const model::Mat6 doubt =
+        view.doubt != nullptr ? view.doubt->OfCamera() : model::Mat6(model::Mat6::Zero());
+    const CornerSlope doubted = by_camera.lazyProduct(doubt);
     const SeenCorners::Vector bent_by_focal = config.scale_sigma * ShapeByFocalLength(by_camera, expected);
     const SeenCorners::Covariance S_doubt = S_noise + doubted.lazyProduct(by_camera.transpose()) +
                                             bent_by_focal.lazyProduct(bent_by_focal.transpose());
@@ -294,8 +344,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
     }
   }
   const Eigen::Matrix<double, F::kDim, 1> correction = Y.transpose().lazyProduct(innovation);
-  next.P -= Y.transpose().lazyProduct(Y);
-  next.P = (0.5 * (next.P + next.P.transpose())).eval();
+  Reduce(Y, next.P);
   next.X_BO.p += correction.segment<3>(F::kPosition);
   next.X_BO.R = model::RotationOf(correction.segment<3>(F::kTurn)) * next.X_BO.R;
   next.v_BO_B += correction.segment<3>(F::kVelocity);

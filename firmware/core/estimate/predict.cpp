@@ -17,22 +17,22 @@ struct Seen {
   double late;        // how much older than its stamp [s]
   double late_sigma;  // of it, for a filter that starts [s]
   model::Pose X_BC;
-  model::Vec6 V_BC_C;  // the camera's twist then
-  model::Mat6 doubt;   // of that pose, as a twist of C
+  model::Vec6 V_BC_C;      // the camera's twist then
+  MeasurementDoubt doubt;  // of that pose
   // Rolling shutter, of a ball or disc: how far its measured centre is off because of the camera's motion
   // [m], and per velocity of the target [s].
   model::Vec3 shift_C = model::Vec3::Zero();
   model::Mat3 shift_by_v_C = model::Mat3::Zero();
 };
 
-hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, CornerView& view,
+hal::Intake TakePose(const config::ServoConfig& config, Seen& seen, CornerView& view,
                      PredictState& state) noexcept {
   view.late = seen.late;
   view.late_sigma = seen.late_sigma;
   view.row_time = config.predict.row_time;
   view.row_y = config.predict.row_y;
   view.V_BC_C = seen.V_BC_C;
-  view.doubt = seen.doubt;
+  view.doubt = &seen.doubt;
   view.stamp_ns = seen.measurement.stamp_ns;
   view.X_CB = seen.X_BC.Inverse();
   const Verdict verdict = TakeView(config.predict, config.feature.corners, view, state.hypotheses);
@@ -43,7 +43,7 @@ hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, Corner
   return verdict.intake;
 }
 
-hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, features::LiftedTarget lifted,
+hal::Intake TakePosition(const config::ServoConfig& config, Seen& seen, features::LiftedTarget lifted,
                          PredictState& state) noexcept {
   lifted.p_CO_C -= seen.shift_C;
   const bool is_disc = features::TraitsOf(config.feature.target).body == features::TargetBody::kDisc;
@@ -56,18 +56,15 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
     lifted.p_CO_C += size / lifted.p_CO_C.norm() * (seen.X_BC.R.transpose() * verdict.off_B) - seen.shift_C;
     changed = verdict.changed;
   }
-  // The camera's twist [v; w] moves the target's place by v + w x p_CO_C.
   const model::Mat3& R = seen.X_BC.R;
-  Eigen::Matrix<double, 3, 6> by_camera;
-  by_camera << model::Mat3::Identity(), -model::CrossMatrix(lifted.p_CO_C);
-  const model::Mat3 doubt_C = by_camera * seen.doubt * by_camera.transpose();
   const MeasuredCentre centre{.stamp_ns = seen.measurement.stamp_ns,
                               .p_BO = seen.X_BC * lifted.p_CO_C,
                               .cov_B = R * lifted.cov_p * R.transpose(),
-                              .doubt_B = R * doubt_C * R.transpose(),
                               .late = seen.late,
                               .late_sigma = seen.late_sigma,
-                              .v_BO_held = R * (by_camera * seen.V_BC_C),
+                              .v_BO_held = R * (PlaceByCamera(lifted.p_CO_C) * seen.V_BC_C),
+                              .doubt = &seen.doubt,
+                              .p_CO_C = lifted.p_CO_C,
                               .shift_by_v_B = R * seen.shift_by_v_C * R.transpose()};
   if (changed) {
     const int accepted = state.filter.accepted;

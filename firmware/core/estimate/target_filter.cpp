@@ -106,7 +106,10 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   const Mat3 S_inverse = S.inverse();
   const double gate2 = config.gate_sigma * config.gate_sigma;
   const auto fits = [&](const Mat3& inverse) { return innovation.dot(inverse * innovation) <= gate2; };
-  if (!fits(S_inverse) && !fits((S + measured.doubt_B).inverse())) {
+  const auto fits_with_doubt = [&] {
+    return measured.doubt != nullptr && fits((S + measured.doubt->OfPlace(measured.p_CO_C)).inverse());
+  };
+  if (!fits(S_inverse) && !fits_with_doubt()) {
     if (filter.rejected_in_row + 1 >= config.gate_rejects_max) {
       StartAt(measured, filter);
       return hal::Intake::kTaken;

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/estimate/measurement_doubt.hpp"
 #include "firmware/core/model/types.hpp"
 #include "fovea/hal/events.hpp"
 
@@ -39,10 +40,12 @@ struct MeasuredCentre {
   std::int64_t stamp_ns = 0;                    // of its picture
   model::Vec3 p_BO = model::Vec3::Zero();       // [m] in B
   model::Mat3 cov_B = model::Mat3::Zero();      // of its noise [m^2]
-  model::Mat3 doubt_B = model::Mat3::Zero();    // uncertainty from calibration, for the gate alone [m^2]
   double late = 0.0;                            // p_BO uses the camera's pose this long before the stamp [s]
   double late_sigma = 0.0;                      // standard deviation of `late` [s]; for a filter that starts
   model::Vec3 v_BO_held = model::Vec3::Zero();  // then, of a point there that the camera holds [m/s]
+  // Uncertainty from calibration, for the gate alone, of a target at `p_CO_C` [m]; null: none.
+  MeasurementDoubt* doubt = nullptr;
+  model::Vec3 p_CO_C = model::Vec3::Zero();
   // Rolling shutter: p_BO is off its place at the stamp by this times the target's velocity [s].
   model::Mat3 shift_by_v_B = model::Mat3::Zero();
 };

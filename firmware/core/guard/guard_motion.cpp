@@ -62,7 +62,8 @@ LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E
   return limits;
 }
 
-// Joint position: each joint on its own, because the others may still do the task.
+// Joint position: each joint on its own, because the others may still do the task. Both limits allow a joint
+// to stand, so only the one ahead of it matters.
 LimitSet LimitJointPosition(const config::ServoConfig& config, const model::VecN& q,
                             model::VecN& dq) noexcept {
   const config::GuardConfig& guard = config.guard;
@@ -70,15 +71,11 @@ LimitSet LimitJointPosition(const config::ServoConfig& config, const model::VecN
   for (int i = 0; i < dq.size(); ++i) {
     const model::Joint& joint = JointOf(config, i);
     const trajectory::JointPace pace = trajectory::PaceOf(config, i);
-    const double up = barriers::BarrierSpeed(joint.q_max - guard.joint_position_margin - q[i],
-                                             pace.deceleration, pace.reaction_s);
-    const double down = barriers::BarrierSpeed(q[i] - joint.q_min - guard.joint_position_margin,
-                                               pace.deceleration, pace.reaction_s);
-    if (dq[i] > up) {
-      dq[i] = up;
-      limits |= Bit(Limit::kJointPosition);
-    } else if (dq[i] < -down) {
-      dq[i] = -down;
+    const double room = dq[i] > 0.0 ? joint.q_max - guard.joint_position_margin - q[i]
+                                    : q[i] - joint.q_min - guard.joint_position_margin;
+    const double most = barriers::BarrierSpeed(room, pace.deceleration, pace.reaction_s);
+    if (std::fabs(dq[i]) > most) {
+      dq[i] = std::copysign(most, dq[i]);
       limits |= Bit(Limit::kJointPosition);
     }
   }
@@ -155,9 +152,10 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
   model::VecN dq = wish.dq;
   LimitSet limits = LimitVelocity(config, dq);
   limits |= LimitJointPosition(config, reference.q, dq);
-  limits |= LimitWorkspace(config, p_BE, J_E_B, dq);
-  // The workspace correction may move a joint again, so that the joint's limits apply once more.
-  limits |= LimitJointPosition(config, reference.q, dq);
+  if (const LimitSet workspace = LimitWorkspace(config, p_BE, J_E_B, dq); workspace != 0) {
+    // The workspace correction may move a joint again, so that the joint's limits apply once more.
+    limits |= workspace | LimitJointPosition(config, reference.q, dq);
+  }
   limits |= LimitVelocity(config, dq);
   limits |= LimitSpeed(config, J_E_B, reference_poses, dq);
   const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "firmware/core/barriers/levers.hpp"
 #include "firmware/core/barriers/solid_barriers.hpp"
@@ -20,36 +21,25 @@ bool Within(double q, double q_now, double low, double high) noexcept {
   return q <= std::max(high, q_now) + kSlack && q >= std::min(low, q_now) - kSlack;
 }
 
-struct StopPlan {
-  std::array<trajectory::VelocityChange, model::kMaxJoints> joints;
-  double duration_s = 0.0;
-};
-
-StopPlan PlanAll(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept {
-  StopPlan plan;
-  for (int i = 0; i < reference.q.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const model::Joint& joint = config.arm.joints[k];
-    plan.joints[k] = trajectory::PlanVelocityChange(
-        reference.dq[i], reference.ddq[i], 0.0,
-        {joint.dq_max, config.guard.joint_acceleration_fraction * joint.ddq_max,
-         config.guard.joint_jerk_fraction * joint.dddq_max});
-    plan.duration_s = std::max(plan.duration_s, plan.joints[k].Duration());
-  }
-  return plan;
-}
-
 // The stop as a function of time.
 class StopWay {
  public:
   StopWay(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept
-      : config_(config),
-        reference_(reference),
-        plan_(PlanAll(config, reference)),
-        levers_(barriers::Levers(config.arm, config.guard.hand)) {}
+      : config_(config), reference_(reference), levers_(barriers::Levers(config.arm, config.guard.hand)) {
+    for (int i = 0; i < reference.q.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const model::Joint& joint = config.arm.joints[k];
+      const trajectory::VelocityChange change = trajectory::PlanVelocityChange(
+          reference.dq[i], reference.ddq[i], 0.0,
+          {joint.dq_max, config.guard.joint_acceleration_fraction * joint.ddq_max, JerkOf(k)});
+      paths_[k] = trajectory::VelocityPath(change);
+      durations_s_[k] = change.Duration();
+      duration_s_ = std::max(duration_s_, durations_s_[k]);
+    }
+  }
 
   // The tick's own step precedes the continuous motion.
-  [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + hal::kTickPeriodS; }
+  [[nodiscard]] double Duration() const noexcept { return duration_s_ + hal::kTickPeriodS; }
 
   // Upper bounds from some time on: speed of any point of the arm [m/s], angular speed of its hand [rad/s].
   struct Most {
@@ -62,13 +52,10 @@ class StopWay {
     Most most;
     for (int i = 0; i < q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const trajectory::AxisState state = plan_.joints[k].At(t);
-      q[i] = reference_.q[i] + reference_.dq[i] * hal::kTickPeriodS + state.x;
+      const trajectory::AxisState state = paths_[k].At(t);
+      q[i] = Start(i) + state.x;
       dq[i] = state.v;
-      // A joint is never faster than now, or than after it has released its acceleration.
-      const double settled = trajectory::SettledVelocity(
-          state.v, state.a, config_.guard.joint_jerk_fraction * config_.arm.joints[k].dddq_max);
-      const double speed = std::max(std::fabs(state.v), std::fabs(settled));
+      const double speed = SpeedMost(k, state.v, state.a);
       most.speed += levers_[k] * speed;
       most.turn += config_.arm.joints[k].type == model::JointType::kRevolute ? speed : 0.0;
     }
@@ -76,60 +63,163 @@ class StopWay {
     return most;
   }
 
-  // The largest distance of a point of the arm, when the stop begins, from its place at `q_now`.
-  [[nodiscard]] double FirstStep(const model::VecN& q_now) const noexcept {
-    double reach = 0.0;
-    for (int i = 0; i < q_now.size(); ++i) {
-      const double step =
-          std::fabs(reference_.q[i] - q_now[i]) + std::fabs(reference_.dq[i]) * hal::kTickPeriodS;
-      reach += levers_[static_cast<std::size_t>(i)] * step;
+  // The joints' positions at the end of the stop.
+  void End(model::VecN& q) const noexcept {
+    for (int i = 0; i < q.size(); ++i) {
+      q[i] = Start(i) + paths_[static_cast<std::size_t>(i)].At(Duration()).x;
     }
-    return reach;
+  }
+
+  [[nodiscard]] const barriers::PerJoint& Levers() const noexcept { return levers_; }
+
+  // An upper bound of every point's distance between its places at the postures `a` and `b`.
+  [[nodiscard]] double Between(const model::VecN& a, const model::VecN& b) const noexcept {
+    double distance = kRounding;
+    for (int i = 0; i < a.size(); ++i) {
+      distance += levers_[static_cast<std::size_t>(i)] * std::fabs(a[i] - b[i]);
+    }
+    return distance;
+  }
+
+  // The same between `q_now` and all postures of the stop, which ends at `q_end`. A joint that does not
+  // reverse is furthest away where the stop begins or ends.
+  [[nodiscard]] double FurthestFrom(const model::VecN& q_now, const model::VecN& q_end) const noexcept {
+    double distance = kRounding;
+    for (int i = 0; i < q_now.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double v = reference_.dq[i];
+      const double settled = trajectory::SettledVelocity(v, reference_.ddq[i], JerkOf(k));
+      const double begins = std::fabs(Start(i) - q_now[i]);
+      const double far = v * settled >= 0.0
+                             ? std::max(begins, std::fabs(q_end[i] - q_now[i]))
+                             : begins + durations_s_[k] * std::max(std::fabs(v), std::fabs(settled));
+      distance += levers_[k] * far;
+    }
+    return distance;
   }
 
  private:
+  static constexpr double kRounding = 1e-12;  // of a distance [m]
+
+  [[nodiscard]] double JerkOf(std::size_t k) const noexcept {
+    return config_.guard.joint_jerk_fraction * config_.arm.joints[k].dddq_max;
+  }
+  // Where the continuous motion of joint `i` begins.
+  [[nodiscard]] double Start(int i) const noexcept {
+    return reference_.q[i] + reference_.dq[i] * hal::kTickPeriodS;
+  }
+  // A joint is never faster than now, or than after it has released its acceleration.
+  [[nodiscard]] double SpeedMost(std::size_t k, double v, double a) const noexcept {
+    return std::max(std::fabs(v), std::fabs(trajectory::SettledVelocity(v, a, JerkOf(k))));
+  }
+
   const config::ServoConfig& config_;
   const trajectory::Reference& reference_;
-  StopPlan plan_;
+  std::array<trajectory::VelocityPath, model::kMaxJoints> paths_;
+  std::array<double, model::kMaxJoints> durations_s_{};
+  double duration_s_ = 0.0;
   barriers::PerJoint levers_;
 };
 
+// Upper bounds of the hand's speeds at postures not far from `q_now`, without their poses.
+//
+// The hand's velocity is sum_i J_i(q) dq_i. A joint j that moves by d_j changes J_i by at most l_max(i, j)
+// d_j, with the levers l (levers.hpp): a joint nearer to the base than i turns J_i, and a joint beyond it
+// moves the hand. It turns joint i's axis by at most d_j, if it is nearer to the base.
+class HandSpeeds {
+ public:
+  // `levers`, `q_now` and `poses_now` must outlive the object.
+  HandSpeeds(const model::ArmModel& arm, const barriers::PerJoint& levers, const model::VecN& q_now,
+             const model::ArmPoses& poses_now) noexcept
+      : arm_(arm), levers_(levers), q_now_(q_now), poses_now_(poses_now) {
+    model::ComputeLinearJacobian(arm, poses_now, poses_now.X_BE.p, J_);
+  }
+
+  struct Most {
+    double speed = 0.0;  // linear [m/s]
+    double turn = 0.0;   // angular [rad/s]
+  };
+
+  [[nodiscard]] Most At(const model::VecN& q, const model::VecN& dq) const noexcept {
+    double beyond = 0.0;  // what the joints beyond joint i have moved the hand by [m]
+    for (int i = 0; i < q.size(); ++i) {
+      beyond += levers_[static_cast<std::size_t>(i)] * std::fabs(q[i] - q_now_[i]);
+    }
+    double turned = 0.0;  // by the joints up to joint i [rad]
+    Most more;            // than with the axes of `q_now`
+    model::Vec3 v = model::Vec3::Zero();
+    for (int i = 0; i < q.size(); ++i) {
+      const double lever = levers_[static_cast<std::size_t>(i)];
+      const double moved = std::fabs(q[i] - q_now_[i]);
+      const double rate = std::fabs(dq[i]);
+      more.turn += rate * turned;
+      turned += moved;
+      beyond -= lever * moved;
+      more.speed += rate * (lever * turned + beyond);
+      v += dq[i] * J_.col(i);
+    }
+    return {v.norm() + more.speed + kSlack,
+            model::AngularVelocity(arm_, poses_now_, dq).norm() + more.turn + kSlack};
+  }
+
+ private:
+  const model::ArmModel& arm_;
+  const barriers::PerJoint& levers_;
+  const model::VecN& q_now_;
+  const model::ArmPoses& poses_now_;
+  model::LinearJacobian J_;
+};
+
 // The arm's barriers, each with its margin. Past a barrier the arm may only come back.
+//
+// No barrier's value falls by more than the joints' motion between two postures moves any point (levers.hpp).
+// That holds for a pair of links too: seen from the one nearer to the base, only the joints between them move
+// the other. So a barrier is looked at again only when the arm has moved by the clearance that it last had.
 class Bounds {
  public:
-  static constexpr int kMost = barriers::SolidBarriers::kMost;
-
   Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept : solid_(config) {
     const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, now);
     for (int i = 0; i < solid_.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double value = solid_.ValueOf(i, now, bodies);
       least_[k] = std::min(solid_.StopMarginOf(i), value) - kSlack;
-      clear_now_[k] = solid_.ShareOf(i) * (value - least_[k]);
+      clear_[k] = value - least_[k];
+      clear_of_all_ = std::min(clear_of_all_, clear_[k]);
     }
   }
 
-  [[nodiscard]] int size() const noexcept { return solid_.size(); }
-  [[nodiscard]] hal::LimitSet LimitOf(int i) const noexcept { return hal::Bit(solid_.NameOf(i)); }
-  // The distance that any point may still travel before bound `i`, at the posture `now`.
-  [[nodiscard]] double ClearNow(int i) const noexcept { return clear_now_[static_cast<std::size_t>(i)]; }
-  // The same with the links at `poses`; negative if the bound is exceeded.
-  [[nodiscard]] double Clear(int i, const model::ArmPoses& poses,
-                             const barriers::ArmBodies& bodies) const noexcept {
-    return solid_.ShareOf(i) * (solid_.ValueOf(i, poses, bodies) - least_[static_cast<std::size_t>(i)]);
+  // True if no bound can be exceeded where every point is at most `moved` away from where the bounds were
+  // last looked at.
+  [[nodiscard]] bool AreClear(double moved) const noexcept { return moved <= clear_of_all_; }
+
+  // Looks at those bounds that can be exceeded with the links at `poses`. The limits of the first exceeded
+  // one; 0 if there is none.
+  [[nodiscard]] hal::LimitSet Look(const model::ArmModel& arm, const model::ArmPoses& poses,
+                                   double moved) noexcept {
+    const barriers::ArmBodies bodies = barriers::PlaceBodies(arm, poses);
+    clear_of_all_ = HUGE_VAL;
+    for (int i = 0; i < solid_.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      clear_[k] -= moved;
+      if (!(clear_[k] >= 0.0)) {
+        clear_[k] = solid_.ValueOf(i, poses, bodies) - least_[k];
+        if (!(clear_[k] >= 0.0)) {
+          return hal::Bit(solid_.NameOf(i));
+        }
+      }
+      clear_of_all_ = std::min(clear_of_all_, clear_[k]);
+    }
+    return 0;
   }
 
  private:
+  static constexpr int kMost = barriers::SolidBarriers::kMost;
+
   barriers::SolidBarriers solid_;
   std::array<double, kMost> least_{};  // smallest allowed value of each
-  std::array<double, kMost> clear_now_{};
+  std::array<double, kMost> clear_{};  // at least so far above it when they were last looked at
+  double clear_of_all_ = HUGE_VAL;     // the smallest of these
 };
-
-double HandSpeed(const model::ArmModel& arm, const model::ArmPoses& poses, const model::VecN& dq) noexcept {
-  model::LinearJacobian J;
-  model::ComputeLinearJacobian(arm, poses, poses.X_BE.p, J);
-  return J.lazyProduct(dq).norm();
-}
 
 }  // namespace
 
@@ -138,63 +228,59 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
   const config::GuardConfig& guard = config.guard;
   const StopWay way(config, reference);
   const double duration = way.Duration();
-  model::VecN q = reference.q;
-  model::VecN dq = reference.dq;
+  model::VecN q_end = reference.q;
 
   // Joints: a joint is furthest out where it stops, unless it reverses before.
-  way.At(duration, q, dq);
-  for (int i = 0; i < q.size(); ++i) {
+  way.End(q_end);
+  for (int i = 0; i < q_end.size(); ++i) {
     const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
-    if (!Within(q[i], q_now[i], joint.q_min + guard.joint_position_margin,
+    if (!Within(q_end[i], q_now[i], joint.q_min + guard.joint_position_margin,
                 joint.q_max - guard.joint_position_margin)) {
       return hal::Bit(hal::Limit::kJointPosition);
     }
   }
 
   // Arm and hand: at times that are denser at the start, because the arm certainly moves along that part. A
-  // bound is checked only from the time at which some point can have reached it.
-  const Bounds bounds(config, poses_now);
-  std::array<double, Bounds::kMost> clear_until{};
-  const StopWay::Most most_now = way.At(0.0, q, dq);
-  const double first_step = way.FirstStep(q_now);
+  // bound is looked at only where some point can have reached it, and the hand's speeds while they could
+  // exceed their limits.
+  Bounds bounds(config, poses_now);
+  const bool are_clear = bounds.AreClear(way.FurthestFrom(q_now, q_end));
   const double speed_most = config::kSpeedShareMost * config::SpeedLimitOfReference(guard);
   const double turn_most = config::kTurnShareMost * config::TurnLimitOfReference(guard);
-  // While the hand could exceed its speed or turn limit, each sample is checked.
-  double first_due = most_now.speed > speed_most || most_now.turn > turn_most ? 0.0 : HUGE_VAL;
-  for (int i = 0; i < bounds.size(); ++i) {
-    double& until = clear_until[static_cast<std::size_t>(i)];
-    until = (bounds.ClearNow(i) - first_step) / most_now.speed;
-    first_due = std::min(first_due, until);
-  }
+  std::optional<HandSpeeds> hand;
   model::ArmPoses poses;
+  model::VecN q_looked = q_now;  // where the bounds were last looked at
+  model::VecN q = reference.q;
+  model::VecN dq = reference.dq;
   for (int sample = 0; sample < kStopSamples; ++sample) {
     const double share = static_cast<double>(sample) / (kStopSamples - 1);
-    const double t = duration * share * share;
-    if (t < first_due) {
-      continue;
+    const StopWay::Most most = way.At(duration * share * share, q, dq);
+    const bool may_be_fast = most.speed > speed_most || most.turn > turn_most;
+    if (are_clear && !may_be_fast) {
+      return 0;  // nor will it be
     }
-    const StopWay::Most most = way.At(t, q, dq);
-    model::ComputePoses(config.arm, q, poses);
-    const bool may_be_fast = most.speed > speed_most;
-    if (may_be_fast && HandSpeed(config.arm, poses, dq) > speed_most) {
+    if (may_be_fast && !hand) {
+      hand.emplace(config.arm, way.Levers(), q_now, poses_now);
+    }
+    const HandSpeeds::Most hand_most = may_be_fast ? hand->At(q, dq) : HandSpeeds::Most{};
+    const bool checks_speed = most.speed > speed_most && !(hand_most.speed <= speed_most);
+    const bool checks_turn = most.turn > turn_most && !(hand_most.turn <= turn_most);
+    const double moved = are_clear ? 0.0 : way.Between(q, q_looked);
+    const bool checks_bounds = !are_clear && !bounds.AreClear(moved);
+    if (checks_speed || checks_turn || checks_bounds) {
+      model::ComputePoses(config.arm, q, poses);
+    }
+    if (checks_speed && model::LinearVelocity(config.arm, poses, poses.X_BE.p, dq).norm() > speed_most) {
       return hal::Bit(hal::Limit::kCartesianSpeed);
     }
-    const bool may_turn_fast = most.turn > turn_most;
-    if (may_turn_fast && model::AngularVelocity(config.arm, poses, dq).norm() > turn_most) {
+    if (checks_turn && model::AngularVelocity(config.arm, poses, dq).norm() > turn_most) {
       return hal::Bit(hal::Limit::kRotationSpeed);
     }
-    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
-    first_due = may_be_fast || may_turn_fast ? t : HUGE_VAL;
-    for (int i = 0; i < bounds.size(); ++i) {
-      double& until = clear_until[static_cast<std::size_t>(i)];
-      if (!(t < until)) {
-        const double clear = bounds.Clear(i, poses, bodies);
-        if (!(clear >= 0.0)) {
-          return bounds.LimitOf(i);
-        }
-        until = t + clear / most.speed;
+    if (checks_bounds) {
+      if (const hal::LimitSet passed = bounds.Look(config.arm, poses, moved); passed != 0) {
+        return passed;
       }
-      first_due = std::min(first_due, until);
+      q_looked = q;
     }
   }
   return 0;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace fovea::model {
 
@@ -23,32 +25,65 @@ void FactorCholesky(Matrix& A) noexcept {
   }
 }
 
+// Calls solve(c, width) for all columns of `x`, by fours and then one by one. Four at once load each entry of
+// L once; each column's operations stay the same.
+template <typename Vectors, typename Solve>
+void ForColumns(const Vectors& x, const Solve& solve) noexcept {
+  Eigen::Index c = 0;
+  if constexpr (Vectors::ColsAtCompileTime != 1) {
+    for (; c + 4 <= x.cols(); c += 4) {
+      solve(c, std::integral_constant<int, 4>{});
+    }
+  }
+  for (; c < x.cols(); ++c) {
+    solve(c, std::integral_constant<int, 1>{});
+  }
+}
+
 // Solves L x = b in place, `L` from FactorCholesky; `x` [n], or [n x m] column by column. Real-time: yes.
 template <typename Matrix, typename Vectors>
 void SolveLower(const Matrix& L, Vectors& x) noexcept {
-  for (Eigen::Index c = 0; c < x.cols(); ++c) {
+  ForColumns(x, [&](Eigen::Index c, auto width) {
     for (Eigen::Index i = 0; i < L.rows(); ++i) {
-      double sum = x(i, c);
-      for (Eigen::Index k = 0; k < i; ++k) {
-        sum -= L(i, k) * x(k, c);
+      std::array<double, width> sum;
+      for (int j = 0; j < width; ++j) {
+        sum[static_cast<std::size_t>(j)] = x(i, c + j);
       }
-      x(i, c) = sum / L(i, i);
+      for (Eigen::Index k = 0; k < i; ++k) {
+        const double factor = L(i, k);
+        for (int j = 0; j < width; ++j) {
+          sum[static_cast<std::size_t>(j)] -= factor * x(k, c + j);
+        }
+      }
+      const double pivot = L(i, i);
+      for (int j = 0; j < width; ++j) {
+        x(i, c + j) = sum[static_cast<std::size_t>(j)] / pivot;
+      }
     }
-  }
+  });
 }
 
 // Solves L^T x = b in place. Real-time: yes.
 template <typename Matrix, typename Vectors>
 void SolveLowerTransposed(const Matrix& L, Vectors& x) noexcept {
-  for (Eigen::Index c = 0; c < x.cols(); ++c) {
+  ForColumns(x, [&](Eigen::Index c, auto width) {
     for (Eigen::Index i = L.rows() - 1; i >= 0; --i) {
-      double sum = x(i, c);
-      for (Eigen::Index k = i + 1; k < L.rows(); ++k) {
-        sum -= L(k, i) * x(k, c);
+      std::array<double, width> sum;
+      for (int j = 0; j < width; ++j) {
+        sum[static_cast<std::size_t>(j)] = x(i, c + j);
       }
-      x(i, c) = sum / L(i, i);
+      for (Eigen::Index k = i + 1; k < L.rows(); ++k) {
+        const double factor = L(k, i);
+        for (int j = 0; j < width; ++j) {
+          sum[static_cast<std::size_t>(j)] -= factor * x(k, c + j);
+        }
+      }
+      const double pivot = L(i, i);
+      for (int j = 0; j < width; ++j) {
+        x(i, c + j) = sum[static_cast<std::size_t>(j)] / pivot;
+      }
     }
-  }
+  });
 }
 
 // Solves L L^T x = b in place. Real-time: yes.

@@ -6,8 +6,25 @@
 namespace fovea::model {
 namespace {
 
-// Velocity of the point at `p_B`, in axes of B, per unit of velocity of joint i.
-Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i, const Vec3& p_B) noexcept {
+// True for a turn about x, as between most joints of a robot description.
+bool TurnsAboutX(const Mat3& R) noexcept {
+  return R(0, 0) == 1.0 && R(1, 0) == 0.0 && R(2, 0) == 0.0 && R(0, 1) == 0.0 && R(0, 2) == 0.0;
+}
+
+// R_BL = R_BP R_PL, without the terms that are zero if R_PL is a turn about x.
+void Turn(const Mat3& R_BP, const Mat3& R_PL, Mat3& R_BL) noexcept {
+  if (!TurnsAboutX(R_PL)) {
+    R_BL.noalias() = R_BP.lazyProduct(R_PL);
+    return;
+  }
+  R_BL.col(0) = R_BP.col(0);
+  for (int i = 1; i < 3; ++i) {
+    R_BL.col(i) = R_PL(1, i) * R_BP.col(1) + R_PL(2, i) * R_BP.col(2);
+  }
+}
+
+// PointVelocity, for the loops below: there it is worth its place in each of them.
+inline Vec3 VelocityOfPoint(const ArmModel& model, const ArmPoses& poses, int i, const Vec3& p_B) noexcept {
   const auto k = static_cast<std::size_t>(i);
   const Vec3 axis_B = poses.X_BL[k].R.col(2);
   if (model.joints[k].type == JointType::kPrismatic) {
@@ -18,6 +35,10 @@ Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i, const Ve
 
 }  // namespace
 
+Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i, const Vec3& p_B) noexcept {
+  return VelocityOfPoint(model, poses, i, p_B);
+}
+
 void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcept {
   const Pose base;
   const Pose* X_BP = &base;  // of the link before
@@ -26,7 +47,7 @@ void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcep
     const Joint& joint = model.joints[k];
     // The joint's frame at q = 0, in B.
     Pose& X_BL = poses.X_BL[k];
-    X_BL.R.noalias() = X_BP->R.lazyProduct(joint.X_PJ.R);
+    Turn(X_BP->R, joint.X_PJ.R, X_BL.R);
     X_BL.p.noalias() = X_BP->p + X_BP->R.lazyProduct(joint.X_PJ.p);
     if (joint.type == JointType::kRevolute) {
       // A turn about z mixes the first two columns and leaves the third.
@@ -48,7 +69,7 @@ void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X
   const Mat3 R_FB = X_BF.R.transpose();
   J_F.resize(6, model.num_joints);
   for (int i = 0; i < model.num_joints; ++i) {
-    J_F.col(i).head<3>() = R_FB * PointVelocity(model, poses, i, X_BF.p);
+    J_F.col(i).head<3>() = R_FB * VelocityOfPoint(model, poses, i, X_BF.p);
     if (model.joints[static_cast<std::size_t>(i)].type == JointType::kRevolute) {
       J_F.col(i).tail<3>() = R_FB * poses.X_BL[static_cast<std::size_t>(i)].R.col(2);
     } else {
@@ -61,8 +82,16 @@ void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const V
                            LinearJacobian& J_B) noexcept {
   J_B.resize(3, model.num_joints);
   for (int i = 0; i < model.num_joints; ++i) {
-    J_B.col(i) = PointVelocity(model, poses, i, p_B);
+    J_B.col(i) = VelocityOfPoint(model, poses, i, p_B);
   }
+}
+
+Vec3 LinearVelocity(const ArmModel& model, const ArmPoses& poses, const Vec3& p_B, const VecN& dq) noexcept {
+  Vec3 v_B = model.num_joints > 0 ? Vec3(dq[0] * VelocityOfPoint(model, poses, 0, p_B)) : Vec3::Zero();
+  for (int i = 1; i < model.num_joints; ++i) {
+    v_B += dq[i] * VelocityOfPoint(model, poses, i, p_B);
+  }
+  return v_B;
 }
 
 Vec3 AngularVelocity(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept {

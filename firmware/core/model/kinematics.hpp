@@ -26,6 +26,11 @@ void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X
 // Real-time: yes.
 void ComputeBaseJacobian(const ArmModel& model, const ArmPoses& poses, Mat6N& J_B) noexcept;
 
+// Velocity of the arm's point at `p_B` [m], in axes of B, per unit of velocity of joint `i`, which must be
+// nearer to the base than the point. Real-time: yes.
+[[nodiscard]] Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i,
+                                 const Vec3& p_B) noexcept;
+
 using LinearJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints>;
 
 // Velocity of the end effector's point at `p_B` [m], in axes of B: v = J dq. `J_B` becomes
@@ -36,6 +41,10 @@ void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const V
 // The end effector's acceleration from the joints' velocities alone: dJ/dt dq [m/s^2, rad/s^2], linear first,
 // of E's origin, in axes of B. Real-time: yes.
 [[nodiscard]] Vec6 BiasAcceleration(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;
+
+// The velocity of that point for the joint velocities `dq`, without its Jacobian [m/s]. Real-time: yes.
+[[nodiscard]] Vec3 LinearVelocity(const ArmModel& model, const ArmPoses& poses, const Vec3& p_B,
+                                  const VecN& dq) noexcept;
 
 // The end effector's angular velocity in axes of B [rad/s], for the joint velocities `dq`. Real-time: yes.
 [[nodiscard]] Vec3 AngularVelocity(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;

@@ -144,9 +144,11 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   }
   const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
   guard::MotionWish wish;
-  if (!steering || state_.way.note.way == hal::Way::kAwaitPlan) {
+  const bool accelerates = control::LineOf(config_.law.law).commands_acceleration;
+  const double slowing = accelerates ? 0.0 : control::SlowingPace(state_.way, state_.reference);
+  if (!steering || (state_.way.note.way == hal::Way::kAwaitPlan && slowing == 0.0)) {
     wish = guard::StopTogether(config_, state_.reference);
-  } else if (!ResolveWish(wish)) {
+  } else if (!ResolveWish(slowing, wish)) {
     LatchFault(hal::Fault::kNonFiniteControl, -1);
     return;
   }
@@ -162,15 +164,18 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   NoteSteering();
 }
 
-// The wish of the law, or of the plan, within the limits. False if it is not finite.
-bool ServoTask::ResolveWish(guard::MotionWish& wish) noexcept {
+// The wish of the law, or of the plan, within the limits. `slowing`: the law's pace before a plan. False if
+// it is not finite.
+bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
   const bool accelerates = control::LineOf(config_.law.law).commands_acceleration;
   if (!planned && !accelerates) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s =
         static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
-    const double blend = trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
+    const double blend = slowing > 0.0
+                             ? slowing
+                             : state_.way.pace * trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
   }

@@ -84,7 +84,7 @@ class ServoTask final : public ServoStep {
   void ChooseTheWay() noexcept;
   void TakePlan(const trajectory::PlanPart& part) noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
-  [[nodiscard]] bool ResolveWish(guard::MotionWish& wish) noexcept;
+  [[nodiscard]] bool ResolveWish(double slowing, guard::MotionWish& wish) noexcept;
   [[nodiscard]] bool IsOutside() const noexcept;
   void CheckFollowing() noexcept;
   void UpdateBlockedTime() noexcept;

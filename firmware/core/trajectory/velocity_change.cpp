@@ -32,22 +32,40 @@ double VelocityChange::Travel() const noexcept {
   return state.x;
 }
 
+VelocityPath::VelocityPath(const VelocityChange& change) noexcept : phases_(change.phases) {
+  AxisState state = change.start;
+  for (std::size_t i = 0; i < phases_.size(); ++i) {
+    begins_[i] = state;
+    state = After(state, phases_[i].jerk, phases_[i].duration_s);
+  }
+  end_ = {state.x, change.v_end, 0.0};
+}
+
+AxisState VelocityPath::At(double t) const noexcept {
+  double left = std::max(t, 0.0);
+  for (std::size_t i = 0; i < phases_.size(); ++i) {
+    if (left <= phases_[i].duration_s) {
+      return After(begins_[i], phases_[i].jerk, left);
+    }
+    left -= phases_[i].duration_s;
+  }
+  return {end_.x + left * end_.v, end_.v, 0.0};
+}
+
 VelocityChange PlanVelocityChange(double v0, double a0, double v1, const AxisLimits& limits) noexcept {
   const double jerk = limits.j_max;
-  VelocityChange change;
-  change.start = {0.0, v0, a0};
-  change.v_end = v1;
-  AxisState state = change.start;
+  const AxisState start{0.0, v0, a0};
+  AxisState state = start;
+  JerkPhase back{0.0, 0.0};
   if (std::fabs(a0) > limits.a_max) {
-    change.phases[VelocityChange::kReturn] = {(std::fabs(a0) - limits.a_max) / jerk,
-                                              std::copysign(jerk, -a0)};
-    state = After(state, std::copysign(jerk, -a0), (std::fabs(a0) - limits.a_max) / jerk);
+    back = {(std::fabs(a0) - limits.a_max) / jerk, std::copysign(jerk, -a0)};
+    state = After(state, back.jerk, back.duration_s);
     state.a = std::copysign(limits.a_max, a0);
   }
   // Up, unless releasing the acceleration alone would already lead beyond v1.
-  change.direction = SettledVelocity(state.v, state.a, jerk) > v1 ? -1.0 : 1.0;
-  const double gain = change.direction * (v1 - state.v);
-  const double a = change.direction * state.a;
+  const double direction = SettledVelocity(state.v, state.a, jerk) > v1 ? -1.0 : 1.0;
+  const double gain = direction * (v1 - state.v);
+  const double a = direction * state.a;
   // Velocity gained by a peak: (2 peak^2 - a^2) / (2 jerk) + peak hold = gain.
   double peak = std::sqrt(std::max(jerk * gain + 0.5 * a * a, 0.0));
   double hold_s = 0.0;
@@ -55,10 +73,10 @@ VelocityChange PlanVelocityChange(double v0, double a0, double v1, const AxisLim
     peak = limits.a_max;
     hold_s = std::max((gain + (a * a - 2.0 * peak * peak) / (2.0 * jerk)) / peak, 0.0);
   }
-  change.phases[VelocityChange::kRamp] = {std::max((peak - a) / jerk, 0.0), change.direction * jerk};
-  change.phases[VelocityChange::kHold] = {hold_s, 0.0};
-  change.phases[VelocityChange::kRelease] = {peak / jerk, -change.direction * jerk};
-  return change;
+  const JerkPhase ramp{std::max((peak - a) / jerk, 0.0), direction * jerk};
+  const JerkPhase hold{hold_s, 0.0};
+  const JerkPhase release{peak / jerk, -direction * jerk};
+  return {{back, ramp, hold, release}, start, v1, direction};
 }
 
 }  // namespace fovea::trajectory

@@ -56,6 +56,21 @@ struct VelocityChange {
   [[nodiscard]] double Travel() const noexcept;
 };
 
+// A change for callers that ask for many times of it: it keeps the states in which the phases begin.
+class VelocityPath {
+ public:
+  VelocityPath() = default;
+  explicit VelocityPath(const VelocityChange& change) noexcept;
+
+  // VelocityChange::At, to the last bit. Real-time: yes.
+  [[nodiscard]] AxisState At(double t) const noexcept;
+
+ private:
+  std::array<JerkPhase, VelocityChange::kNumPhases> phases_;
+  std::array<AxisState, VelocityChange::kNumPhases> begins_;
+  AxisState end_;
+};
+
 // The shortest change from velocity `v0` and acceleration `a0`, which may be beyond its limit, to velocity
 // `v1` and no acceleration. `limits.v_max` is not used. Real-time: yes.
 [[nodiscard]] VelocityChange PlanVelocityChange(double v0, double a0, double v1,

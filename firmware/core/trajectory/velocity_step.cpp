@@ -11,27 +11,26 @@ VelocityStep StepVelocity(const AxisState& state, double v, double a, const Axis
   const double half = 0.5 * jerk_step;
   double beside = (v - state.v) / period_s - a;  // the acceleration beside `a` that reaches v in this tick
   const double most = std::sqrt(half * half + 2.0 * jerk_step * std::fabs(beside)) - half;
-  VelocityStep step;
-  step.reaches = true;
+  bool at_a_max = false;
+  bool at_j_max = false;
+  bool reaches = true;
   if (std::fabs(beside) > most) {
     beside = std::copysign(most, beside);
-    step.reaches = false;
+    reaches = false;
   }
   double next = a + beside;
   if (std::fabs(next) > limits.a_max) {
     next = std::copysign(limits.a_max, next);
-    step.at_a_max = true;
-    step.reaches = false;
+    at_a_max = true;
+    reaches = false;
   }
   if (const double change = next - state.a; std::fabs(change) > jerk_step) {
     next = state.a + std::copysign(jerk_step, change);
-    step.at_j_max = true;
-    step.reaches = false;
+    at_j_max = true;
+    reaches = false;
   }
-  step.state.a = next;
-  step.state.v = state.v + next * period_s;
-  step.state.x = state.x + step.state.v * period_s;
-  return step;
+  const double v_next = state.v + next * period_s;
+  return {{state.x + v_next * period_s, v_next, next}, at_a_max, at_j_max, reaches};
 }
 
 }  // namespace fovea::trajectory

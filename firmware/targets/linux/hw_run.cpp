@@ -63,7 +63,8 @@ class Session {
     if (config.HasCamera()) {
       beliefs_.emplace(servo_, ConfiguredBeliefs(config),
                        beliefs::FinderConfig{LearnsOf(config), live_ != nullptr, /*waits=*/false});
-      shell_.UsePlanner(plans_.emplace(servo_).box());
+      const auto& eye = config.vision.config;
+      shell_.UsePlanner(plans_.emplace(servo_, planning::EyeReach{eye.distance_min, eye.distance_max}).box());
       plans_->Begin();
       OpenCamera();
     }

@@ -16,27 +16,45 @@ constexpr std::size_t kPixels = kSide * kSide;
 constexpr double kSigmas = 6.0;         // R of pure noise exceeds 1 by fewer standard deviations than this
 constexpr double kMoreThanNoise = 1.3;  // mean square differences larger by this factor are not noise
 
+// Calls `visit` with the left and top pixel of each patch.
+template <class Visit>
+void ForPatches(int width_px, int height_px, const Visit& visit) {
+  for (int i = 0; i < height_px / kSpacing; ++i) {
+    for (int j = 0; j < width_px / kSpacing; ++j) {
+      visit(kSpacing * j + kSide * (i % kStagger), kSpacing * i + kSide * (j % kStagger));
+    }
+  }
+}
+
 }  // namespace
 
-void PictureWatch::TakePatches(const cv::Mat& image, std::vector<std::uint8_t>& patches) const {
+std::span<const hal::PixelArea> PictureWatch::Patches(int width_px, int height_px) {
+  if (width_px != width_px_ || height_px != height_px_) {
+    width_px_ = width_px;
+    height_px_ = height_px;
+    patches_.clear();
+    ForPatches(width_px, height_px, [this](int left, int top) {
+      patches_.push_back({left, top, kSide, kSide});
+    });
+  }
+  return patches_;
+}
+
+void PictureWatch::TakePatches(const Picture& image, std::vector<std::uint8_t>& patches) {
   const int channels = image.channels();
   const int channel = channels == 3 ? 1 : 0;  // green
   std::size_t k = 0;
   const int across = image.cols / kSpacing;
   const int down = image.rows / kSpacing;
   patches.resize(static_cast<std::size_t>(across * down) * kPixels);
-  for (int i = 0; i < down; ++i) {
-    for (int j = 0; j < across; ++j) {
-      const int left = kSpacing * j + kSide * (i % kStagger);
-      const int top = kSpacing * i + kSide * (j % kStagger);
-      for (int y = top; y < top + kSide; ++y) {
-        const std::uint8_t* row = image.ptr<std::uint8_t>(y) + left * channels + channel;
-        for (int x = 0; x < kSide; ++x) {
-          patches[k++] = row[x * channels];
-        }
+  ForPatches(image.cols, image.rows, [&](int left, int top) {
+    for (int y = top; y < top + kSide; ++y) {
+      const std::uint8_t* row = image.ptr<std::uint8_t>(y) + left * channels + channel;
+      for (int x = 0; x < kSide; ++x) {
+        patches[k++] = row[x * channels];
       }
     }
-  }
+  });
 }
 
 bool PictureWatch::IsSame(const std::vector<std::uint8_t>& patches) {
@@ -67,7 +85,7 @@ bool PictureWatch::IsSame(const std::vector<std::uint8_t>& patches) {
          mean_square <= kMoreThanNoise * least_;
 }
 
-std::int64_t PictureWatch::Look(const cv::Mat& image, std::int64_t stamp_ns) {
+std::int64_t PictureWatch::Look(const Picture& image, std::int64_t stamp_ns) {
   if (image.cols < kSpacing || image.rows < kSpacing) {
     return 0;
   }

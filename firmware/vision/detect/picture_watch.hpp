@@ -14,22 +14,29 @@
 #pragma once
 
 #include <cstdint>
-#include <opencv2/core.hpp>
+#include <span>
 #include <vector>
+
+#include "firmware/vision/picture.hpp"
 
 namespace fovea::vision {
 
 // For one thread. Allocates when a picture is larger than those before.
 class PictureWatch {
  public:
+  // The pixels that it looks at in a picture of this size.
+  [[nodiscard]] std::span<const hal::PixelArea> Patches(int width_px, int height_px);
   // Takes the next picture, CV_8UC3 or CV_8UC1, stamped `stamp_ns`. Returns how long the picture has been the
   // same [ns]; 0 when it differs from the series before it.
-  std::int64_t Look(const cv::Mat& image, std::int64_t stamp_ns);
+  std::int64_t Look(const Picture& image, std::int64_t stamp_ns);
 
  private:
-  void TakePatches(const cv::Mat& image, std::vector<std::uint8_t>& patches) const;
+  static void TakePatches(const Picture& image, std::vector<std::uint8_t>& patches);
   [[nodiscard]] bool IsSame(const std::vector<std::uint8_t>& patches);
 
+  std::vector<hal::PixelArea> patches_;  // in a picture of this size:
+  int width_px_ = 0;
+  int height_px_ = 0;
   std::vector<std::uint8_t> first_;  // patches of the first picture of the series
   std::vector<std::uint8_t> now_;
   std::int64_t first_stamp_ns_ = 0;

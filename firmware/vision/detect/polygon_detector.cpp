@@ -72,7 +72,7 @@ PolygonDetector::PolygonDetector(const DetectorConfig& config)
   limits_.side_min_px = std::max(10.0, 0.3 * f * side / config.distance_max);
 }
 
-Detection PolygonDetector::Look(const cv::Mat& image, const cv::Rect& area, int factor) {
+Detection PolygonDetector::Look(const Picture& image, const cv::Rect& area, int factor) {
   Detection best;
   best.kind = config_.kind;
   map_.Find(image, area, factor, config_.by == FindBy::kColour && image.channels() == 3 ? &colour_ : nullptr);
@@ -87,7 +87,7 @@ Detection PolygonDetector::Look(const cv::Mat& image, const cv::Rect& area, int 
 }
 
 // Fits from `start`. Replaces `best` if the fit has a higher confidence.
-void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start, Detection& best) {
+void PolygonDetector::Judge(const Picture& image, const PolygonCandidate& start, Detection& best) {
   const auto n = shape_.size();
   const PolygonFit fit = fitter_.Fit(image, config_.intrinsics, std::span(start.corner).first(n));
   const double radius = RadiusOf(std::span(fit.corners.corner).first(n));
@@ -188,7 +188,7 @@ void PolygonDetector::SetCorners(const CornerFit& fit, int first, Detection& d) 
 }
 
 // Over points between the centre and the outline.
-double PolygonDetector::ColourShare(const cv::Mat& image, std::span<const ImagePoint> corners) const {
+double PolygonDetector::ColourShare(const Picture& image, std::span<const ImagePoint> corners) const {
   constexpr int kPerSide = 8;
   constexpr std::array<double, 3> kOut{0.25, 0.55, 0.8};
   std::array<ImagePoint, Detection::kMaxCorners * kPerSide * kOut.size()> points;

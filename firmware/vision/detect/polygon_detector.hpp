@@ -11,6 +11,7 @@
 #include "firmware/vision/find/edge_map.hpp"
 #include "firmware/vision/find/polygon_finder.hpp"
 #include "firmware/vision/fit/polygon_fit.hpp"
+#include "firmware/vision/picture.hpp"
 #include "firmware/vision/pose/flat_pose.hpp"
 
 namespace fovea::vision {
@@ -21,16 +22,16 @@ class PolygonDetector {
   explicit PolygonDetector(const DetectorConfig& config);
 
   // The best detection in `area` of the image, which is searched at 1 / `factor` of its resolution.
-  Detection Look(const cv::Mat& image, const cv::Rect& area, int factor);
+  Detection Look(const Picture& image, const cv::Rect& area, int factor);
   // Keep: the last detection was the target; the next pose is chosen near it. Forget: the target is lost.
   void Keep() { X_CO_ = best_X_CO_; }
   void Forget() { X_CO_.reset(); }
 
  private:
-  void Judge(const cv::Mat& image, const PolygonCandidate& start, Detection& best);
+  void Judge(const Picture& image, const PolygonCandidate& start, Detection& best);
   void DropPosesOutOfReach(CornerPoses& found) const;
   void SetCorners(const CornerFit& fit, int first, Detection& d) const;
-  [[nodiscard]] double ColourShare(const cv::Mat& image, std::span<const ImagePoint> corners) const;
+  [[nodiscard]] double ColourShare(const Picture& image, std::span<const ImagePoint> corners) const;
 
   const DetectorConfig config_;
   const std::vector<Eigen::Vector2d> shape_;

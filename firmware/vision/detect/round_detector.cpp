@@ -64,12 +64,12 @@ RoundDetector<Curve>::RoundDetector(const DetectorConfig& config)
 }
 
 template <class Curve>
-Detection RoundDetector<Curve>::Look(const cv::Mat& image, const cv::Rect& area, int factor) {
+Detection RoundDetector<Curve>::Look(const Picture& image, const cv::Rect& area, int factor) {
   Detection best;
   best.kind = config_.kind;
   if (config_.by == FindBy::kHough) {
     for (const Circle& circle :
-         hough_.Find(image(area), config_.hough, limits_.radius_min_px, limits_.radius_max_px)) {
+         hough_.Find(image.Cut(area), config_.hough, limits_.radius_min_px, limits_.radius_max_px)) {
       Curve curve;
       SetCircle(config_.intrinsics, {circle.u_px + area.x, circle.v_px + area.y, circle.radius_px}, curve);
       Judge(image, curve, best);
@@ -88,7 +88,7 @@ Detection RoundDetector<Curve>::Look(const cv::Mat& image, const cv::Rect& area,
 }
 
 template <class Curve>
-Detection RoundDetector<Curve>::LookAgain(const cv::Mat& image) {
+Detection RoundDetector<Curve>::LookAgain(const Picture& image) {
   Detection found;
   found.kind = config_.kind;
   if (!last_ || config_.by == FindBy::kHough) {
@@ -113,7 +113,7 @@ void RoundDetector<Curve>::Keep() {
 
 // Fits from `start`. Replaces `best` if the fit has a higher confidence.
 template <class Curve>
-void RoundDetector<Curve>::Judge(const cv::Mat& image, const Curve& start, Detection& best) {
+void RoundDetector<Curve>::Judge(const Picture& image, const Curve& start, Detection& best) {
   const CurveFit<Curve> fit = fitter_.Fit(image, config_.intrinsics, start, kIsSphere<Curve>);
   const double most = MostRmsPx(fit.noise_px, fit.ellipse.radius_px);
   if (!fit.converged || fit.rms_px > most || fit.ellipse.radius_px < 0.8 * limits_.radius_min_px ||
@@ -146,7 +146,7 @@ void RoundDetector<Curve>::Judge(const cv::Mat& image, const Curve& start, Detec
 }
 
 template <class Curve>
-double RoundDetector<Curve>::ColourShare(const cv::Mat& image, const Ellipse& ellipse) const {
+double RoundDetector<Curve>::ColourShare(const Picture& image, const Ellipse& ellipse) const {
   constexpr int kRings = 5;
   constexpr int kPerRing = 16;
   std::array<ImagePoint, kRings * kPerRing> points;

@@ -11,6 +11,7 @@
 #include "firmware/vision/find/edge_map.hpp"
 #include "firmware/vision/find/hough_finder.hpp"
 #include "firmware/vision/fit/curve_fit.hpp"
+#include "firmware/vision/picture.hpp"
 #include "firmware/vision/pose/flat_pose.hpp"
 
 namespace fovea::vision {
@@ -22,20 +23,20 @@ class RoundDetector {
   explicit RoundDetector(const DetectorConfig& config);
 
   // The best detection in `area` of the image, which is searched at 1 / `factor` of its resolution.
-  Detection Look(const cv::Mat& image, const cv::Rect& area, int factor);
+  Detection Look(const Picture& image, const cv::Rect& area, int factor);
   // The same without a search: fits the expected outline directly. Found if it is about as trustworthy as the
   // last one. Not found if no outline is expected.
-  Detection LookAgain(const cv::Mat& image);
+  Detection LookAgain(const Picture& image);
   // Keep: the last detection was the target; the next one is expected near it. Forget: the target is lost.
   void Keep();
   void Forget() { last_.reset(); }
 
  private:
-  void Judge(const cv::Mat& image, const Curve& start, Detection& best);
+  void Judge(const Picture& image, const Curve& start, Detection& best);
   bool FeatureOf(const CurveFit<Curve>& fit, Detection& detection);
   // Both poses, the one nearest to the last image's pose first.
   bool DiscOf(const EllipseCurve& curve, double round_below, std::array<DiscPose, 2>& poses) const;
-  [[nodiscard]] double ColourShare(const cv::Mat& image, const Ellipse& ellipse) const;
+  [[nodiscard]] double ColourShare(const Picture& image, const Ellipse& ellipse) const;
 
   const DetectorConfig config_;
   ColourModel colour_;

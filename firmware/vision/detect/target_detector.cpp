@@ -25,11 +25,11 @@ TargetDetector::AnyDetector TargetDetector::Make(const DetectorConfig& config) {
 
 TargetDetector::TargetDetector(const DetectorConfig& config) : config_(config), detector_(Make(config)) {}
 
-Detection TargetDetector::Look(const cv::Mat& image, const cv::Rect& area, int factor) {
+Detection TargetDetector::Look(const Picture& image, const cv::Rect& area, int factor) {
   return std::visit([&](auto& detector) { return detector.Look(image, area, factor); }, detector_);
 }
 
-Detection TargetDetector::LookAgain(const cv::Mat& image) {
+Detection TargetDetector::LookAgain(const Picture& image) {
   return std::visit(
       [&](auto& detector) {
         if constexpr (requires { detector.LookAgain(image); }) {
@@ -41,7 +41,7 @@ Detection TargetDetector::LookAgain(const cv::Mat& image) {
       detector_);
 }
 
-cv::Rect TargetDetector::ExpectedArea(const cv::Mat& image) const {
+cv::Rect TargetDetector::ExpectedArea() const {
   double u = last_.u_px + step_.u_px;
   double v = last_.v_px + step_.v_px;
   config_.intrinsics.Distort(u, v);
@@ -50,12 +50,17 @@ cv::Rect TargetDetector::ExpectedArea(const cv::Mat& image) const {
                        kRoomShare * last_.radius_px + kRoomPx;
   const int left = std::max(0, static_cast<int>(u - reach));
   const int top = std::max(0, static_cast<int>(v - reach));
-  const int right = std::min(image.cols, static_cast<int>(u + reach) + 1);
-  const int bottom = std::min(image.rows, static_cast<int>(v + reach) + 1);
+  const int right = std::min(config_.intrinsics.width_px, static_cast<int>(u + reach) + 1);
+  const int bottom = std::min(config_.intrinsics.height_px, static_cast<int>(v + reach) + 1);
   return {left, top, std::max(right - left, 0), std::max(bottom - top, 0)};
 }
 
-Detection TargetDetector::Detect(const cv::Mat& image) {
+cv::Rect TargetDetector::FirstLook() const {
+  return has_last_ ? ExpectedArea()
+                   : cv::Rect(0, 0, config_.intrinsics.width_px, config_.intrinsics.height_px);
+}
+
+Detection TargetDetector::Detect(const Picture& image) {
   const cv::Rect whole(0, 0, image.cols, image.rows);
   Detection found;
   found.kind = config_.kind;
@@ -64,7 +69,7 @@ Detection TargetDetector::Detect(const cv::Mat& image) {
     found.tracked = found.found;
   }
   if (has_last_ && !found.found) {
-    const cv::Rect area = ExpectedArea(image);
+    const cv::Rect area = ExpectedArea();
     if (area.width > 0 && area.height > 0) {
       found = Look(image, area, last_.radius_px < kSmallPx ? 2 : 4);
       found.tracked = found.found;

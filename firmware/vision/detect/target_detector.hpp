@@ -13,6 +13,7 @@
 #include "firmware/vision/detect/round_detector.hpp"
 #include "firmware/vision/detection.hpp"
 #include "firmware/vision/detector_config.hpp"
+#include "firmware/vision/picture.hpp"
 
 namespace fovea::vision {
 
@@ -22,7 +23,10 @@ class TargetDetector {
   explicit TargetDetector(const DetectorConfig& config);
 
   // `image` is CV_8UC3 (BGR) or CV_8UC1, of the intrinsics' size.
-  Detection Detect(const cv::Mat& image);
+  Detection Detect(const Picture& image);
+
+  // Where Detect looks first in a picture of the intrinsics' size. It may go on beside it, by Picture::Need.
+  [[nodiscard]] cv::Rect FirstLook() const;
 
   // Resets the tracking, as if no image had been seen before.
   void Forget();
@@ -32,9 +36,9 @@ class TargetDetector {
   using DiscDetector = RoundDetector<EllipseCurve>;
   using AnyDetector = std::variant<SphereDetector, DiscDetector, PolygonDetector>;
   static AnyDetector Make(const DetectorConfig& config);
-  Detection Look(const cv::Mat& image, const cv::Rect& area, int factor);
-  Detection LookAgain(const cv::Mat& image);
-  [[nodiscard]] cv::Rect ExpectedArea(const cv::Mat& image) const;
+  Detection Look(const Picture& image, const cv::Rect& area, int factor);
+  Detection LookAgain(const Picture& image);
+  [[nodiscard]] cv::Rect ExpectedArea() const;
 
   // Centre and size of the outline.
   struct Place {

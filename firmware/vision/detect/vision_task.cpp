@@ -54,8 +54,10 @@ hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement
   }
   const int type = CV_8UC(hal::BytesPerPixel(frame.format));
   // A view of the camera's pixels; OpenCV's type has no const.
-  const cv::Mat image(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
-                      static_cast<std::size_t>(frame.stride_bytes));
+  const cv::Mat pixels(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
+                       static_cast<std::size_t>(frame.stride_bytes));
+  const Picture image(pixels, frame.maker);
+  image.Need(detector_.FirstLook(), picture_.Patches(frame.width_px, frame.height_px));
   const std::int64_t same_for_ns = picture_.Look(image, frame.stamp_ns);
   try {
     last_ = detector_.Detect(image);
@@ -116,6 +118,7 @@ hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& s
         black.resize(static_cast<std::size_t>(frame.stride_bytes) *
                      static_cast<std::size_t>(frame.height_px));
         frame.pixels = black;
+        frame.maker = nullptr;
       }
     }
     sink.Put(measurement);

@@ -5,7 +5,7 @@
 
 namespace fovea::vision {
 
-double ColourShare(const cv::Mat& image, const ColourModel& colour, std::span<const ImagePoint> points) {
+double ColourShare(const Picture& image, const ColourModel& colour, std::span<const ImagePoint> points) {
   if (image.channels() == 1) {
     return 1.0;
   }
@@ -18,6 +18,7 @@ double ColourShare(const cv::Mat& image, const ColourModel& colour, std::span<co
     if (x < 1 || y < 1 || x >= image.cols - 1 || y >= image.rows - 1) {
       continue;
     }
+    image.Need({x - 1, y - 1, 3, 3});
     // The mean of a 3 x 3 patch, so that noise in a dark image does not change the hue.
     cv::Vec3i sum(0, 0, 0);
     for (int dy = -1; dy <= 1; ++dy) {

@@ -58,7 +58,7 @@ std::span<const EdgePoint> EdgeMap::Chain(int index) const {
   return std::span(points_).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
 }
 
-void EdgeMap::Find(const cv::Mat& image, const cv::Rect& area, int factor, const ColourModel* colour) {
+void EdgeMap::Find(const Picture& image, const cv::Rect& area, int factor, const ColourModel* colour) {
   factor_ = factor;
   width_ = area.width / factor;
   height_ = area.height / factor;
@@ -74,7 +74,8 @@ void EdgeMap::Find(const cv::Mat& image, const cv::Rect& area, int factor, const
   Link();
 }
 
-void EdgeMap::Reduce(const cv::Mat& image, const cv::Rect& area, const ColourModel* colour) {
+void EdgeMap::Reduce(const Picture& image, const cv::Rect& area, const ColourModel* colour) {
+  image.Need(area);
   const bool gray = image.channels() == 1;
   if (factor_ == 4) {
     gray ? ReduceBy<4, 1>(image, area, colour) : ReduceBy<4, 3>(image, area, colour);
@@ -85,7 +86,7 @@ void EdgeMap::Reduce(const cv::Mat& image, const cv::Rect& area, const ColourMod
 
 // Factor and channels are compile-time constants: this takes a third of the time.
 template <std::size_t kFactor, std::size_t kChannels>
-void EdgeMap::ReduceBy(const cv::Mat& image, const cv::Rect& area, const ColourModel* colour) {
+void EdgeMap::ReduceBy(const Picture& image, const cv::Rect& area, const ColourModel* colour) {
   constexpr unsigned kArea = kFactor * kFactor;
   constexpr std::size_t kStep = kFactor * kChannels;
   const std::size_t bytes = static_cast<std::size_t>(width_) * kStep;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "firmware/vision/find/colour_model.hpp"
+#include "firmware/vision/picture.hpp"
 
 namespace fovea::vision {
 
@@ -27,7 +28,7 @@ class EdgeMap {
   // Finds edges in `area` of `image` (CV_8UC3 BGR or CV_8UC1), reduced by `factor` (2 or 4). Without
   // `colour`, or in a gray image, uses the brightness of the strongest channel. Allocates when the area is
   // larger, or has more edges, than any before.
-  void Find(const cv::Mat& image, const cv::Rect& area, int factor, const ColourModel* colour);
+  void Find(const Picture& image, const cv::Rect& area, int factor, const ColourModel* colour);
 
   [[nodiscard]] int chain_count() const { return static_cast<int>(chain_ends_.size()); }
   [[nodiscard]] std::span<const EdgePoint> Chain(int index) const;
@@ -37,9 +38,9 @@ class EdgeMap {
   [[nodiscard]] int factor() const { return factor_; }
 
  private:
-  void Reduce(const cv::Mat& image, const cv::Rect& area, const ColourModel* colour);
+  void Reduce(const Picture& image, const cv::Rect& area, const ColourModel* colour);
   template <std::size_t kFactor, std::size_t kChannels>
-  void ReduceBy(const cv::Mat& image, const cv::Rect& area, const ColourModel* colour);
+  void ReduceBy(const Picture& image, const cv::Rect& area, const ColourModel* colour);
   void FindGradient();
   [[nodiscard]] float NoiseOfGradient();
   void ForgetRidges();

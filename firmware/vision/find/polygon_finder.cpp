@@ -15,7 +15,8 @@ constexpr double kNearSide = 0.9;   // points nearer than this support a side
 constexpr double kOverlap = 3.0;    // how far pieces may extend beyond the corner between them
 constexpr double kShortest = 3.5;   // shortest piece
 
-constexpr double kMinTurn = 0.30;  // sine of the angle between neighbouring sides
+constexpr double kMinTurn = 0.30;   // least sine of the angle between neighbouring sides,
+constexpr double kMinSharp = 0.12;  // and at an acute corner: a triangle that is seen obliquely has some
 constexpr std::size_t kMostSegments = 28;
 constexpr std::size_t kMostPolygons = 24;
 constexpr int kMostSideCuts = 7;           // of one side that is tried
@@ -103,7 +104,8 @@ void PolygonFinder::Cut(std::span<const EdgePoint> piece, int depth) {
 // Whether b can be the side after a, in a polygon whose inside is on the left (sign -1) or right (+1).
 bool PolygonFinder::Follows(const Segment& a, const Segment& b, double sign, ImagePoint& corner) const {
   const double cross = a.du * b.dv - a.dv * b.du;
-  if (sign * cross < kMinTurn) {
+  const bool is_acute = a.du * b.du + a.dv * b.dv < 0.0;
+  if (sign * cross < (is_acute ? kMinSharp : kMinTurn)) {
     return false;
   }
   const double ru = b.u0 - a.u1;

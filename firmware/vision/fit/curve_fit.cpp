@@ -24,7 +24,7 @@ constexpr double kShadedPx = 0.03;  // common shift of the outline of a ball tha
 }  // namespace
 
 template <class Curve>
-bool CurveFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const Curve& curve, int most) {
+bool CurveFitter::ReadLines(const Picture& image, const Intrinsics& in, const Curve& curve, int most) {
   const Eigen::Matrix3d conic = curve.Conic(in);
   const Ellipse ellipse = EllipseOf(conic);
   if (!ellipse.real || ellipse.minor_px < 3.0 || ellipse.major_px > 4.0 * in.width_px) {
@@ -248,7 +248,7 @@ bool CurveFitter::Describe(CurveFit<Curve>& fit) {
 
 // Measures and fits in rounds, with at most `most` lines, until one moves the curve less than `still_px`.
 template <class Curve>
-bool CurveFitter::Approach(const cv::Mat& image, const Intrinsics& in, int most, int rounds, double still_px,
+bool CurveFitter::Approach(const Picture& image, const Intrinsics& in, int most, int rounds, double still_px,
                            bool shaded, CurveFit<Curve>& fit) {
   if (!ReadLines(image, in, fit.curve, most)) {
     return false;
@@ -295,7 +295,7 @@ bool CurveFitter::Approach(const cv::Mat& image, const Intrinsics& in, int most,
 }
 
 template <class Curve>
-CurveFit<Curve> CurveFitter::Fit(const cv::Mat& image, const Intrinsics& in, const Curve& start,
+CurveFit<Curve> CurveFitter::Fit(const Picture& image, const Intrinsics& in, const Curve& start,
                                  bool shaded) {
   CurveFit<Curve> fit;
   fit.curve = start;
@@ -305,8 +305,8 @@ CurveFit<Curve> CurveFitter::Fit(const cv::Mat& image, const Intrinsics& in, con
   return fit;
 }
 
-template CurveFit<ConeCurve> CurveFitter::Fit(const cv::Mat&, const Intrinsics&, const ConeCurve&, bool);
-template CurveFit<EllipseCurve> CurveFitter::Fit(const cv::Mat&, const Intrinsics&, const EllipseCurve&,
+template CurveFit<ConeCurve> CurveFitter::Fit(const Picture&, const Intrinsics&, const ConeCurve&, bool);
+template CurveFit<EllipseCurve> CurveFitter::Fit(const Picture&, const Intrinsics&, const EllipseCurve&,
                                                  bool);
 
 }  // namespace fovea::vision

@@ -3,11 +3,10 @@
 // (profiles.hpp), then fits the curve to them by robust weighted least squares, in a few rounds.
 #pragma once
 
-#include <opencv2/core.hpp>
-
 #include "firmware/vision/detector_config.hpp"
 #include "firmware/vision/find/curve.hpp"
 #include "firmware/vision/fit/profiles.hpp"
+#include "firmware/vision/picture.hpp"
 
 namespace fovea::vision {
 
@@ -32,14 +31,14 @@ class CurveFitter {
   // Fits the curve near `start`, which may be about 2 px off. `shaded`: the outline is a ball's, whose
   // brightness falls off towards it.
   template <class Curve>
-  CurveFit<Curve> Fit(const cv::Mat& image, const Intrinsics& in, const Curve& start, bool shaded);
+  CurveFit<Curve> Fit(const Picture& image, const Intrinsics& in, const Curve& start, bool shaded);
 
  private:
   template <class Curve>
-  bool Approach(const cv::Mat& image, const Intrinsics& in, int most, int rounds, double still_px,
+  bool Approach(const Picture& image, const Intrinsics& in, int most, int rounds, double still_px,
                 bool shaded, CurveFit<Curve>& fit);
   template <class Curve>
-  bool ReadLines(const cv::Mat& image, const Intrinsics& in, const Curve& curve, int most);
+  bool ReadLines(const Picture& image, const Intrinsics& in, const Curve& curve, int most);
   template <class Curve>
   bool MakeRows(const Intrinsics& in, const Curve& curve);
   template <int kN>

@@ -21,7 +21,7 @@ constexpr double kPartShiftPx = 0.04;
 }  // namespace
 
 // Places lines across the sides and judges the colours beside them. False if a side's length is impossible.
-bool PolygonFitter::PlaceLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit) {
+bool PolygonFitter::PlaceLines(const Picture& image, const Intrinsics& in, const PolygonFit& fit) {
   const int n = fit.corners.count;
   std::array<int, Detection::kMaxCorners> ends{};
   count_ = 0;
@@ -58,7 +58,7 @@ bool PolygonFitter::PlaceLines(const cv::Mat& image, const Intrinsics& in, const
   return true;
 }
 
-bool PolygonFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit) {
+bool PolygonFitter::ReadLines(const Picture& image, const Intrinsics& in, const PolygonFit& fit) {
   if (!PlaceLines(image, in, fit)) {
     return false;
   }
@@ -146,7 +146,7 @@ void PolygonFitter::MoveCorners(PolygonFit& fit) const {
 }
 
 // Measures and fits in rounds until the sides stop moving.
-bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit) {
+bool PolygonFitter::Approach(const Picture& image, const Intrinsics& in, double& blur, PolygonFit& fit) {
   for (int round = 0; round < kSideRounds; ++round) {
     profiles_.Measure(at_px_, weight_, blur);
     double rms2 = 0.0;
@@ -203,7 +203,7 @@ bool PolygonFitter::IsWhole(const PolygonFit& fit) const {
   return evidence_.is_whole() && fit.least_on > kStraight;
 }
 
-PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start) {
+PolygonFit PolygonFitter::Fit(const Picture& image, const Intrinsics& in, std::span<const ImagePoint> start) {
   PolygonFit fit;
   fit.corners.count = static_cast<int>(start.size());
   std::copy(start.begin(), start.end(), fit.corners.corner.begin());

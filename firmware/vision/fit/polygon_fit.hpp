@@ -4,13 +4,12 @@
 // covariance. Hidden parts of a side (side_evidence.hpp) are left out, with a margin.
 #pragma once
 
-#include <opencv2/core.hpp>
-
 #include "firmware/vision/detector_config.hpp"
 #include "firmware/vision/find/polygon_finder.hpp"
 #include "firmware/vision/fit/profiles.hpp"
 #include "firmware/vision/fit/side_evidence.hpp"
 #include "firmware/vision/fit/side_line.hpp"
+#include "firmware/vision/picture.hpp"
 #include "firmware/vision/pose/flat_pose.hpp"
 
 namespace fovea::vision {
@@ -38,7 +37,7 @@ class PolygonFitter {
   PolygonFitter(const EdgeNoise& edge_noise, bool in_any_light)
       : edge_noise_(edge_noise), evidence_(in_any_light) {}
   // Fits the polygon near `start`, whose sides may be about 2 px off; corners ordered from u to v.
-  PolygonFit Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start);
+  PolygonFit Fit(const Picture& image, const Intrinsics& in, std::span<const ImagePoint> start);
 
   // The colours beside the sides that were fitted last.
   [[nodiscard]] const SideEvidence& evidence() const { return evidence_; }
@@ -51,9 +50,9 @@ class PolygonFitter {
     int from = 0, to = 0;       // its lines
     SideLine line;
   };
-  bool PlaceLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit);
-  bool ReadLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit);
-  bool Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit);
+  bool PlaceLines(const Picture& image, const Intrinsics& in, const PolygonFit& fit);
+  bool ReadLines(const Picture& image, const Intrinsics& in, const PolygonFit& fit);
+  bool Approach(const Picture& image, const Intrinsics& in, double& blur, PolygonFit& fit);
   bool FitSide(Side& side, double blur, PolygonFit& fit, double& rms2, double& noise2, double& weights);
   void MoveCorners(PolygonFit& fit) const;
   [[nodiscard]] bool IsWhole(const PolygonFit& fit) const;

@@ -57,7 +57,7 @@ constexpr float kGrey = 128.0F;  // subtracted, so that sums of squares keep the
 std::int32_t PlaceOf(double px) { return static_cast<std::int32_t>(px * (1 << kPlaceBits)); }
 
 template <int kChannels>
-void Interpolate(const cv::Mat& image, std::int32_t u, std::int32_t v, float* out) {
+void Interpolate(const Picture& image, std::int32_t u, std::int32_t v, float* out) {
   constexpr std::int32_t kMask = (1 << kPlaceBits) - 1;
   constexpr float kUnit = 1.0F / (1 << (2 * kShareBits));
   const std::int32_t a = (u & kMask) >> (kPlaceBits - kShareBits);
@@ -73,7 +73,7 @@ void Interpolate(const cv::Mat& image, std::int32_t u, std::int32_t v, float* ou
 
 }  // namespace
 
-void Profiles::Read(const cv::Mat& image, const Intrinsics& in, const ProfileLine* lines, int count,
+void Profiles::Read(const Picture& image, const Intrinsics& in, const ProfileLine* lines, int count,
                     bool closed) {
   count_ = std::min(count, kMaxLines);
   closed_ = closed;
@@ -106,6 +106,8 @@ void Profiles::Read(const cv::Mat& image, const Intrinsics& in, const ProfileLin
     if (!readable_[k]) {
       continue;
     }
+    image.Need({cv::Point(static_cast<int>(std::min(ua, ub)), static_cast<int>(std::min(va, vb))),
+                cv::Point(static_cast<int>(std::max(ua, ub)) + 2, static_cast<int>(std::max(va, vb)) + 2)});
     const std::int32_t step_u = PlaceOf(nu);
     const std::int32_t step_v = PlaceOf(nv);
     std::int32_t at_u = PlaceOf(u) - kHalf * step_u;

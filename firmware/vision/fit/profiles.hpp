@@ -12,9 +12,9 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <opencv2/core.hpp>
 
 #include "firmware/vision/intrinsics.hpp"
+#include "firmware/vision/picture.hpp"
 
 namespace fovea::vision {
 
@@ -50,7 +50,7 @@ class Profiles {
   };
 
   // Reads the image along `count` lines. `closed`: the last line and the first are neighbours.
-  void Read(const cv::Mat& image, const Intrinsics& in, const ProfileLine* lines, int count, bool closed);
+  void Read(const Picture& image, const Intrinsics& in, const ProfileLine* lines, int count, bool closed);
 
   // Measures all edges. `at_px[i]` is where the outline is expected to cross line i; `blur_px` the standard
   // deviation of the blur; `weight[i]` the weight of line i in the last fit, 0 to 1.

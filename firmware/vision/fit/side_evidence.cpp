@@ -22,7 +22,7 @@ constexpr double kEndPx = 12.0;    // a side shows its corner if it is seen up t
 constexpr double kEndShare = 0.2;  // or up to this share of its length
 
 // Reads the pixel at the ideal position (u, v); false outside the image.
-bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Eigen::Vector3f& colour) {
+bool ColourAt(const Picture& image, const Intrinsics& in, double u, double v, Eigen::Vector3f& colour) {
   in.Distort(u, v);
   u += 0.5;
   v += 0.5;
@@ -31,6 +31,7 @@ bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Ei
   }
   const auto x = static_cast<int>(u);
   const auto y = static_cast<int>(v);
+  image.Need({x, y, 1, 1});
   const int channels = image.channels();
   const std::uint8_t* pixel = image.ptr<std::uint8_t>(y) + x * channels;
   if (channels == 3) {
@@ -43,7 +44,7 @@ bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Ei
 
 }  // namespace
 
-void SideEvidence::Look(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
+void SideEvidence::Look(const Picture& image, const Intrinsics& in, std::span<const ImagePoint> corners,
                         std::span<const ProfileLine> lines, std::span<const int> ends) {
   lines_ = lines;
   sides_count_ = static_cast<int>(corners.size());
@@ -86,7 +87,7 @@ bool SideEvidence::IsInside(int k, int i) const {
   return is_clear(kDepthPx) && is_clear(kDepthPx + kDepths - 1);
 }
 
-void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in) {
+void SideEvidence::Sample(const Picture& image, const Intrinsics& in) {
   for (int k = 0; k < sides_count_; ++k) {
     const Side& side = sides_[static_cast<std::size_t>(k)];
     // The region clear of the other sides is convex: all lines between two clear lines are clear too.
@@ -173,15 +174,18 @@ SideEvidence::Colour SideEvidence::MedianOf(const std::array<Colour, Profiles::k
   return median;
 }
 
-bool SideEvidence::IsTargets(const Colour& colour) const {
+bool SideEvidence::IsLikeTargets(const Colour& colour) const {
   const auto contrast = static_cast<float>(contrast_);
-  if ((colour - target_).squaredNorm() < kLike * kLike * contrast * contrast) {
-    return true;
-  }
+  return (colour - target_).squaredNorm() < kLike * kLike * contrast * contrast;
+}
+
+// The rule of hue holds for a coloured target alone.
+bool SideEvidence::HueTells() const {
   const float most = target_.maxCoeff();
-  if (!in_any_light_ || channels_ < 3 || !(most - target_.minCoeff() > kColoured * most)) {
-    return false;
-  }
+  return in_any_light_ && channels_ == 3 && most - target_.minCoeff() > kColoured * most;
+}
+
+bool SideEvidence::HasTargetsHue(const Colour& colour) const {
   const float light = colour.dot(target_) / target_.squaredNorm();
   return light > kDarkest && light < kBrightest &&
          (colour - light * target_).squaredNorm() <
@@ -194,6 +198,7 @@ void SideEvidence::Judge() {
   const auto is_side = [this](int i) { return SaysOf(i) == Says::kSide; };
   target_ = MedianOf(inside_, 0, count, any);
   ground_ = MedianOf(outside_, 0, count, any);
+  const bool hue_tells = HueTells();
   for (int turn = 0; turn < 2; ++turn) {
     const float contrast = (target_ - ground_).norm();
     contrast_ = static_cast<double>(contrast);
@@ -204,10 +209,14 @@ void SideEvidence::Judge() {
         says_[line] = Says::kUnknown;
         continue;
       }
-      if (IsTargets(inside_[line])) {
-        says_[line] = IsTargets(outside_[line]) ? Says::kNot : Says::kSide;
+      const Colour& inside = inside_[line];
+      if (IsLikeTargets(inside) || (hue_tells && HasTargetsHue(inside))) {
+        // In a shade, a dark ground is like the target in all but hue.
+        const Colour& outside = outside_[line];
+        const bool goes_on = hue_tells ? HasTargetsHue(outside) : IsLikeTargets(outside);
+        says_[line] = goes_on ? Says::kNot : Says::kSide;
       } else {
-        says_[line] = (inside_[line] - ground_).squaredNorm() < ground2 ? Says::kNot : Says::kHidden;
+        says_[line] = (inside - ground_).squaredNorm() < ground2 ? Says::kNot : Says::kHidden;
       }
     }
     // Now the sides are known: the ground's colour is the colour outside of them.
@@ -306,7 +315,7 @@ int SideEvidence::CornersHidden() const {
 
 // The colour step across the line through a corner along (du, dv), at [from, to) px beyond the corner: colour
 // on the right minus colour on the left. False if over half of the samples are outside the image.
-bool SideEvidence::StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
+bool SideEvidence::StepBeyond(const Picture& image, const Intrinsics& in, const ImagePoint& corner, double du,
                               double dv, int from, int to, Colour& step) {
   constexpr int kNearest = 2;  // beside the line [px]
   constexpr int kFurthest = 4;
@@ -329,7 +338,7 @@ bool SideEvidence::StepBeyond(const cv::Mat& image, const Intrinsics& in, const 
   return 2 * pairs >= (to - from) * (kFurthest - kNearest + 1);
 }
 
-bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
+bool SideEvidence::SideGoesOn(const Picture& image, const Intrinsics& in, std::span<const ImagePoint> corners,
                               double least) const {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const ImagePoint& a = corners[i];
@@ -348,7 +357,7 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
 }
 
 // `own`: the side's own step, right minus left, looking along (du, dv) with v downwards.
-bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
+bool SideEvidence::GoesOn(const Picture& image, const Intrinsics& in, const ImagePoint& corner, double du,
                           double dv, double length, const Colour& own, double least) {
   constexpr int kFirst = 4;  // distance beyond the corner, which is blurred [px]
   constexpr int kPart = 3;   // length of a part [px]; an edge that only crosses is not in all parts

@@ -10,12 +10,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <opencv2/core.hpp>
 #include <span>
 
 #include "firmware/vision/detection.hpp"
 #include "firmware/vision/fit/profiles.hpp"
 #include "firmware/vision/intrinsics.hpp"
+#include "firmware/vision/picture.hpp"
 
 namespace fovea::vision {
 
@@ -40,7 +40,7 @@ class SideEvidence {
 
   // `lines` cross the polygon's sides outward: side by side in the corners' order, each side from its
   // beginning to its end. `ends[k]` is one past side k's last line.
-  void Look(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
+  void Look(const Picture& image, const Intrinsics& in, std::span<const ImagePoint> corners,
             std::span<const ProfileLine> lines, std::span<const int> ends);
 
   // Whether line i's edge can be used for the side: the target ends there, and no covering object is near.
@@ -56,7 +56,7 @@ class SideEvidence {
 
   // Whether the edge along a side continues beyond a corner with a step above `least` [gray levels]: then it
   // is the edge of a covering object. Or it reappears further on: then only a piece of the target is seen.
-  [[nodiscard]] bool SideGoesOn(const cv::Mat& image, const Intrinsics& in,
+  [[nodiscard]] bool SideGoesOn(const Picture& image, const Intrinsics& in,
                                 std::span<const ImagePoint> corners, double least) const;
 
  private:
@@ -66,15 +66,17 @@ class SideEvidence {
     kHidden,   // an object hides the target here
     kNot,      // the ground lies inside, or the target continues outside
   };
-  [[nodiscard]] bool IsTargets(const Colour& colour) const;
+  [[nodiscard]] bool IsLikeTargets(const Colour& colour) const;
+  [[nodiscard]] bool HueTells() const;
+  [[nodiscard]] bool HasTargetsHue(const Colour& colour) const;
   [[nodiscard]] Says SaysOf(int i) const { return says_[static_cast<std::size_t>(i)]; }
-  static bool StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
+  static bool StepBeyond(const Picture& image, const Intrinsics& in, const ImagePoint& corner, double du,
                          double dv, int from, int to, Colour& step);
-  static bool GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
+  static bool GoesOn(const Picture& image, const Intrinsics& in, const ImagePoint& corner, double du,
                      double dv, double length, const Colour& own, double least);
   [[nodiscard]] double DepthOf(int but, double u, double v) const;
   [[nodiscard]] bool IsInside(int k, int i) const;
-  void Sample(const cv::Mat& image, const Intrinsics& in);
+  void Sample(const Picture& image, const Intrinsics& in);
   void Smooth(std::array<Colour, Profiles::kMaxLines>& colours,
               const std::array<bool, Profiles::kMaxLines>& known);
   template <class Counts>

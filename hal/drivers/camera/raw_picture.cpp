@@ -90,6 +90,7 @@ hal::Frame FrameOf(const cv::Mat& picture) {
   frame.stride_bytes = static_cast<std::int32_t>(picture.step[0]);
   frame.format = picture.channels() == 1 ? hal::PixelFormat::kMono8 : hal::PixelFormat::kBgr8;
   frame.pixels = {picture.data, picture.step[0] * static_cast<std::size_t>(picture.rows)};
+  frame.maker = nullptr;
   return frame;
 }
 

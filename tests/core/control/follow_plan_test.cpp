@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <vector>
 
 #include "tests/core/control/planned_way.hpp"
 #include "tests/support/random_states.hpp"
@@ -123,6 +124,47 @@ TEST_F(FollowPlanTest, TargetThatIsElsewhereNeedsANewPlan) {
     EXPECT_EQ(Choose(), PlanEvent::kAsked);
     EXPECT_EQ(way_.note.tries, 2);
   }
+}
+
+// The first new plan is asked for at once, further ones one second apart: between them the law goes on.
+TEST_F(FollowPlanTest, TargetThatKeepsJumpingGetsOneNewPlanASecond) {
+  BeginPlan();
+  const std::int64_t begin_ns = now_ns_;
+  std::vector<std::int64_t> asked_ns;
+  for (int i = 0; i < 4000; ++i) {
+    if (i % 200 == 100) {
+      MoveTarget({i % 400 == 100 ? 0.15 : -0.15, 0.0, 0.0}, {0.0, 0.0, 0.0});
+    }
+    if (way_.note.way == Way::kPlan) {
+      Follow();
+    } else {
+      StandAt(reference_.q);
+    }
+    if (Choose() == PlanEvent::kAsked) {
+      asked_ns.push_back(now_ns_);
+      ASSERT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
+    }
+  }
+  ASSERT_GE(asked_ns.size(), 4U);
+  EXPECT_LT(asked_ns[0] - begin_ns, 110 * hal::kTickPeriodNs);
+  for (std::size_t i = 1; i < asked_ns.size(); ++i) {
+    EXPECT_GE(asked_ns[i] - asked_ns[i - 1], hal::kNsPerSecond - hal::kTickPeriodNs) << i;
+  }
+}
+
+TEST_F(FollowPlanTest, TargetThatMovedAndRestsAgainGetsANewPlan) {
+  BeginPlan();
+  FollowFor(400);
+  MoveTarget({0.2, 0.0, 0.0}, {0.0, 0.0, 0.0});
+  v_BO_ = {0.2, 0.0, 0.0};
+  EXPECT_EQ(Choose(), PlanEvent::kTargetMoved);
+  Choose(500);
+  EXPECT_EQ(way_.note.way, Way::kLaw) << "it follows a moving target";
+  EXPECT_EQ(way_.note.plans_asked, 1);
+  v_BO_.setZero();
+  StandAt(reference_.q);
+  AskForPlan();
+  EXPECT_EQ(way_.note.plans_asked, 2);
 }
 
 TEST_F(FollowPlanTest, SlowMotionOfTheTargetAddsUp) {

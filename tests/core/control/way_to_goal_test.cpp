@@ -59,14 +59,59 @@ TEST_F(WayToGoalTest, MovingTargetIsLeftToTheLaw) {
   AskForPlan();
 }
 
+// The law's motion tells the poses apart, unless limits stop it.
 TEST_F(WayToGoalTest, TargetOfTwoPossiblePosesIsLeftToTheLaw) {
   told_apart_ = false;
-  limits_ = hal::Bit(hal::Limit::kWorkspace);
   Choose(5 * kSecond);
   EXPECT_EQ(way_.note.way, Way::kLaw);
   EXPECT_EQ(way_.note.plans_asked, 0);
   told_apart_ = true;
   AskForPlan();
+  way_.Restart();
+  told_apart_ = false;
+  limits_ = hal::Bit(hal::Limit::kWorkspace);
+  AskForPlan();
+}
+
+// A slow arm stops at once; a fast one fades the law out before it asks.
+TEST_F(WayToGoalTest, FastArmSlowsDownWithItsLaw) {
+  EXPECT_EQ(SlowingPace(way_, reference_), 0.0) << "no plan is awaited";
+  reference_.dq[3] = 0.5;
+  Choose();
+  ASSERT_EQ(way_.note.way, Way::kAwaitPlan);
+  double last = 1.0;
+  EXPECT_EQ(SlowingPace(way_, reference_), last);
+  for (int i = 0; i < kSecond / 2; ++i) {
+    Choose();
+    EXPECT_EQ(way_.note.event, hal::PlanEvent::kNone) << "asks at rest only";
+    const double pace = SlowingPace(way_, reference_);
+    EXPECT_LE(pace, last);
+    EXPECT_GT(pace, last - 0.01) << "no jump";
+    last = pace;
+  }
+  EXPECT_EQ(last, 0.0);
+  way_.pace = 0.5;
+  reference_.dq[3] = 0.05;
+  EXPECT_EQ(SlowingPace(way_, reference_), 0.0);
+  reference_.dq.setZero();
+  AskForPlan();
+  reference_.dq[3] = 0.5;
+  EXPECT_EQ(SlowingPace(way_, reference_), 0.0) << "asked: the arm stands";
+}
+
+// The law may have to stop for a plan as soon as the poses are told apart.
+TEST_F(WayToGoalTest, LawIsSlowWhileItTellsPosesApart) {
+  told_apart_ = false;
+  Choose(kSecond);
+  EXPECT_LT(way_.pace, 0.5);
+  Choose(kSecond);
+  EXPECT_EQ(way_.pace, 1.0) << "not for long";
+  way_.Restart();
+  q_goal_ = test::Ready();
+  q_goal_[0] += 0.08;
+  PutTargetFor(q_goal_);
+  Choose();
+  EXPECT_EQ(way_.pace, 1.0) << "near the goal no plan follows";
 }
 
 // A limit that may block the path, not one that only slows the motion down.

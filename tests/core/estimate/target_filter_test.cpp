@@ -10,6 +10,7 @@
 #include <random>
 
 #include "fovea/hal/types.hpp"
+#include "tests/support/panda.hpp"
 
 namespace fovea::estimate {
 namespace {
@@ -301,20 +302,39 @@ TEST(TargetFilterTest, RejectsOutliersAndRestartsWhenTheTargetMoved) {
 }
 
 // An error that calibration may explain is no outlier: the measurement moves the estimate like any other.
+// Here the hand has just turned by 0.3 rad, with a mount that is known to 0.02 rad.
 TEST(TargetFilterTest, CalibrationDoubtWidensOnlyTheGate) {
-  config::PredictConfig config;
+  config::ServoConfig servo = test::PandaConfig();
+  const config::PredictConfig& config = servo.predict;
   const Vec3 p(0.5, 0.1, 0.04);
+  const Vec3 p_CO_C(0.0, 0.0, 0.4);
   const Mat3 cov = Mat3::Identity() * 1e-8;
   TargetFilter filter;
   for (int k = 0; k < 30; ++k) {
     (void)Update(config, {StampOf(k), p, cov}, filter);
   }
+  model::VecN q = test::Ready();
+  JointHistory history;
+  history.Push(0, q);
+  history.Push(StampOf(30) - 20 * hal::kNsPerMs, q);
+  q[6] += 0.3;
+  history.Push(StampOf(30), q);
+  model::ArmPoses poses;
+  model::ComputePoses(servo.arm, q, poses);
+  const model::Pose X_BC = poses.X_BE * servo.X_EC;
+  const auto doubted = [&](int frame, const Vec3& at, MeasurementDoubt& doubt) {
+    MeasuredCentre measured{StampOf(frame), at, cov};
+    measured.doubt = &doubt;
+    measured.p_CO_C = p_CO_C;
+    return Update(config, measured, filter);
+  };
   TargetFilter plain = filter;
   const Vec3 off = p + Vec3(0.004, 0.0, 0.0);
   EXPECT_EQ(Update(config, {StampOf(30), off, cov}, plain), Intake::kOutlier);
-  EXPECT_EQ(Update(config, {StampOf(30), off, cov, Mat3::Identity() * 1e-6}, filter), Intake::kTaken);
-  EXPECT_EQ(Update(config, {StampOf(31), p + Vec3(0.1, 0, 0), cov, Mat3::Identity() * 1e-6}, filter),
-            Intake::kOutlier);
+  MeasurementDoubt at_30(servo, history, StampOf(30), X_BC, p_CO_C);
+  EXPECT_EQ(doubted(30, off, at_30), Intake::kTaken);
+  MeasurementDoubt at_31(servo, history, StampOf(31), X_BC, p_CO_C);
+  EXPECT_EQ(doubted(31, p + Vec3(0.1, 0.0, 0.0), at_31), Intake::kOutlier);
 }
 
 // Whatever an adversary measures, the estimated speed and acceleration of the target stay bounded.

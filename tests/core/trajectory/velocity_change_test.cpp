@@ -48,6 +48,52 @@ TEST(VelocityChangeTest, EndsAtItsVelocityWithinItsLimits) {
   EXPECT_LE(worst_a, 1.0 + 1e-13);
 }
 
+// A path keeps the states in which the phases begin, and gives the same bits at all times.
+TEST(VelocityChangeTest, PathIsTheChangeToTheLastBit) {
+  test::RandomStates random(63);
+  for (int n = 0; n < test::Repetitions(20000); ++n) {
+    const AxisLimits limits{1.0, std::pow(10.0, random.Uniform(-2.0, 2.0)),
+                            std::pow(10.0, random.Uniform(-2.0, 4.0))};
+    const VelocityChange change =
+        PlanVelocityChange(random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0) * limits.a_max,
+                           random.Uniform(-1.0, 1.0), limits);
+    const VelocityPath path(change);
+    for (const double share : {-0.1, 0.0, random.Uniform(0.0, 1.0), random.Uniform(0.0, 1.0), 1.0, 1.1}) {
+      const AxisState expected = change.At(share * change.Duration());
+      const AxisState state = path.At(share * change.Duration());
+      ASSERT_EQ(state.x, expected.x) << "case " << n << " at " << share;
+      ASSERT_EQ(state.v, expected.v) << "case " << n << " at " << share;
+      ASSERT_EQ(state.a, expected.a) << "case " << n << " at " << share;
+    }
+  }
+}
+
+// A stop does not reverse if its joint would go on when its acceleration is released: then it is furthest
+// away at its end. The proof of a stop (stop_path.cpp) relies on it.
+TEST(VelocityChangeTest, StopThatWouldGoOnDoesNotReverse) {
+  test::RandomStates random(64);
+  int num_going_on = 0;
+  double worst = 0.0;
+  for (int n = 0; n < test::Repetitions(20000); ++n) {
+    const double a_max = random.Uniform(1.0, 15.0);
+    const double jerk = random.Uniform(50.0, 5000.0);
+    const double v = random.Uniform(-1.0, 1.0);
+    const double a = random.Uniform(-1.5, 1.5) * a_max;
+    if (v * SettledVelocity(v, a, jerk) < 0.0) {
+      continue;
+    }
+    ++num_going_on;
+    const VelocityChange stop = PlanVelocityChange(v, a, 0.0, {1.0, a_max, jerk});
+    const double end = std::fabs(stop.Travel());
+    for (int i = 0; i <= 50; ++i) {
+      worst = std::max(worst, std::fabs(stop.At(stop.Duration() * i / 50.0).x) - end);
+    }
+  }
+  std::cout << num_going_on << " stops; furthest beyond the end " << worst << "\n";
+  EXPECT_GT(num_going_on, test::Repetitions(20000) / 10);
+  EXPECT_LE(worst, 1e-12);
+}
+
 // Checked from its positions alone.
 TEST(VelocityChangeTest, StopComesToRestWithinItsLimits) {
   test::RandomStates random(61);

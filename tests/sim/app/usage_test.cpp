@@ -36,7 +36,7 @@ class UsageTest : public testing::Test {
 };
 
 TEST_F(UsageTest, WrongUsageNamesWhatIsAllowed) {
-  const std::string commands = "allowed: run, serve, pictures, list, keys";
+  const std::string commands = "allowed: run, runs, serve, pictures, list, keys";
   EXPECT_THAT(Refusal({}), HasSubstr(commands));
   EXPECT_THAT(Refusal({"fly"}), AllOf(HasSubstr("fly"), HasSubstr(commands)));
   EXPECT_THAT(Refusal({"run"}), AllOf(HasSubstr("scenario is required"), HasSubstr("--set")));

@@ -141,7 +141,7 @@ TEST(LensTest, PlainCameraNeedsNoResampling) {
 // Balls near the corners, through the lens: the detector's position against the true one.
 TEST(LensTest, DetectorUndoesTheLens) {
   RenderScene scene;
-  scene.bench = MakeBench(/*clutter=*/false);
+  scene.bench = ShareBench(/*clutter=*/false, {});
   const Pinhole pinhole = MakePinhole(640, 480, 1.047);
   Optics optics(scene, pinhole, kLens, Sampling::kPlain);
   vision::DetectorConfig config;

@@ -9,9 +9,9 @@
 
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
-#include "firmware/planning/plan_desk.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "sim/operator/desk.hpp"
+#include "sim/run/sim_planner.hpp"
 #include "sim/scenario/run_description.hpp"
 #include "sim/scenario/world_config.hpp"
 #include "sim/world/sim_arm.hpp"
@@ -36,8 +36,8 @@ class OperatedBench {
     clock_.emplace(*world, [this](std::int64_t now_ns) { return Between(now_ns); });
     stalling_.emplace(*clock_, about.scenario.faults.stall);
     loop.emplace(recorder_, *arm, *stalling_, features_, recorder_, meter_);
-    loop->UsePlanner(plans_.box());
-    sim::DeskParts parts{about, *world, *arm, vision_, *loop, *stalling_, {}};
+    loop->UsePlanner(planner_.box());
+    sim::DeskParts parts{about, *world, *arm, vision_, planner_, *loop, *stalling_, {}};
     parts.reports.touch = [this](const std::string& what, const std::string& text) {
       touches.push_back(what + ": " + text);
     };
@@ -92,7 +92,7 @@ class OperatedBench {
 
  private:
   bool Between(std::int64_t now_ns) {
-    plans_.Act(now_ns);
+    planner_.Act(now_ns, /*lockstep=*/true);
     recorder_.Drain(
         [this](const flight::FlightRecord& flown) {
           records.push_back(flown.record);
@@ -112,7 +112,7 @@ class OperatedBench {
   flight::FlightRecorder recorder_{servo_, &servo_, 4096};
   linux_rt::TickMeter meter_;
   hal::FeatureMailbox features_;
-  planning::PlanDesk plans_{about.servo};
+  sim::SimPlanner planner_{about.servo, about.reach, about.scenario.faults.planner};
   TruthEye eye_{about.servo.feature, about.intrinsics.f_u_px, 0.0, 1};
   sim::SimVision vision_{about, {}};
   std::optional<sim::SimArm> sim_arm_;

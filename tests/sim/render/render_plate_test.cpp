@@ -22,7 +22,7 @@ struct Blob {
 class RenderPlateTest : public ::testing::Test {
  protected:
   RenderPlateTest() {
-    scene_.bench = MakeBench(/*clutter=*/false);
+    scene_.bench = ShareBench(/*clutter=*/false, {});
     scene_.robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
     BulletArm arm(scene_.robot, {});
     Eigen::VectorXd q(7);

@@ -23,7 +23,7 @@ constexpr double kRadius = 0.04;
 class RenderTest : public ::testing::Test {
  protected:
   RenderTest() {
-    scene_.bench = MakeBench(/*clutter=*/false);
+    scene_.bench = ShareBench(/*clutter=*/false, {});
     scene_.robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
     scene_.X_EC.translation() = Eigen::Vector3d(0.05, 0.0, 0.04);
     scene_.target.radius = kRadius;
@@ -140,7 +140,7 @@ TEST_F(RenderTest, SkippingHiddenGeometryGivesTheSamePicture) {
                      Eigen::AngleAxisd(uniform(-3.1, 3.1), Eigen::Vector3d::UnitZ()) *
                      Eigen::AngleAxisd(3.1416 + uniform(-0.6, 0.6), Eigen::Vector3d::UnitX());
     const bool is_covered =
-        SeenOver(scene_.bench.planes.front(), pinhole_, exposure_.X_BC.cast<float>()).has_value();
+        SeenOver(scene_.bench->planes.front(), pinhole_, exposure_.X_BC.cast<float>()).has_value();
     covered += is_covered ? 1 : 0;
     renderer.Release();
     const cv::Mat drawn = Draw(renderer).clone();

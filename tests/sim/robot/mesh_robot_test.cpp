@@ -51,7 +51,7 @@ class MeshRobotTest : public testing::Test {
 
   cv::Mat Draw(const SimRobot& robot, double* frame_ms = nullptr) const {
     RenderScene scene;
-    scene.bench = MakeBench(/*clutter=*/false);
+    scene.bench = ShareBench(/*clutter=*/false, {});
     scene.robot = robot;
     scene.X_EC.translation() = Eigen::Vector3d(0.0, 0.0, -0.5);  // the camera's housing is out of sight
     Exposure exposure;

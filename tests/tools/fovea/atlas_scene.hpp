@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "firmware/host/config/servo_keys.hpp"
@@ -21,6 +22,7 @@ inline atlas::Scene AtlasScene(const std::string& arm, const std::string& target
   const double f = 320.0 / std::tan(model::kPi / 6.0);
   scene.camera = {640, 480, f, f, 319.5, 239.5};
   const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + arm + ".toml");
+  scene.drawn = std::make_shared<const atlas::DrawnArm>(robot);
   scene.servo = config::MakeServoConfig(settings, {arm, robot.model, {}}, DefaultMount(), scene.camera, kind);
   return scene;
 }

@@ -120,7 +120,7 @@ void AddTruth(CLI::App& app, AtlasArguments& arguments, CLI::Option* faults, CLI
 
 int JobsOf(const AtlasArguments& arguments) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  return arguments.jobs > 0 ? arguments.jobs : std::max(cores / 2, 1);
+  return arguments.jobs > 0 ? arguments.jobs : std::max(cores, 1);
 }
 
 int RunsOf(const AtlasArguments& arguments) {
@@ -192,9 +192,7 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->expected(1)
       ->allow_extra_args(false)
       ->excludes(target);
-  atlas
-      ->add_option("-j,--jobs", arguments.jobs,
-                   "number of runs in parallel; default: one for every two cores")
+  atlas->add_option("-j,--jobs", arguments.jobs, "number of runs in parallel; default: one for each core")
       ->check(CLI::Range(1, 256));
   atlas
       ->add_option(

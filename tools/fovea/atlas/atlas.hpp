@@ -30,7 +30,7 @@ struct AtlasArguments {
   bool markdown = false;
   std::vector<std::string> only;
   std::optional<int> runs;
-  int jobs = 0;  // 0: one for every two cores
+  int jobs = 0;  // 0: one for each core
   std::optional<int> seed;
   std::vector<std::string> assignments;
   std::string starts;  // file; "": random starts

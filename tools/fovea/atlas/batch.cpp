@@ -21,11 +21,11 @@ Batch::Batch(const Heading& heading, const fs::path& folder, int jobs, bool resu
              const std::vector<Start>& given)
     : heading_(heading),
       scenario_(ScenarioOf(heading.target)),
-      simulator_(bench::SimulatorBeside("fovea atlas")),
       scene_(LoadScene(heading.target, SceneAssignments(heading.assignments))),
       sampler_(scene_),
       folder_(folder),
-      jobs_(static_cast<std::size_t>(jobs)) {
+      jobs_(static_cast<std::size_t>(jobs)),
+      workers_(bench::SimulatorBeside("fovea atlas")) {
   std::error_code error;
   fs::create_directories(folder_ / "runs", error);
   if (error) {
@@ -51,8 +51,7 @@ const Start& Batch::StartOf(int index) {
 void Batch::Begin(int tag, const Task& task, const std::vector<std::string>& more) {
   const Start& start = StartOf(task.index);
   std::vector<std::string> command{
-      simulator_,    "run",    scenario_, "--seed",      std::to_string(start.run_seed),
-      "--no-report", "--json", "--out",   File(task, "")};
+      scenario_, "--seed", std::to_string(start.run_seed), "--no-report", "--json", "--out", File(task, "")};
   // One renderer keeps one core busy.
   for (const char* option : {"--pictures", "failed", "--renderers", "1"}) {
     command.emplace_back(option);
@@ -63,7 +62,7 @@ void Batch::Begin(int tag, const Task& task, const std::vector<std::string>& mor
     command.emplace_back("--set");
     command.push_back(assignment);
   }
-  children_.Start(tag, command, File(task, ".json"), File(task, ".txt"), kRunLimit);
+  workers_.Start(tag, command, File(task, ".json"), File(task, ".txt"), kRunLimit);
 }
 
 void Batch::RemoveOutput(const Task& task) const {
@@ -77,7 +76,7 @@ nlohmann::json Batch::Try(const Case& truth, const std::string& what) {
   trial.name = "trial";  // the runs of the case keep their files
   const Task task{&trial, 0};
   Begin(0, task, {"run.duration_s=0.1"});
-  const Children::Ended ended = children_.WaitForOne();
+  const Workers::Ended ended = workers_.WaitForOne();
   const bool ran = ended.exit_code == config::kDone || ended.exit_code == config::kGoalMissed;
   const std::string out = Content(File(task, ".json"));
   const std::string reason = ReasonOf(Content(File(task, ".txt")));
@@ -107,13 +106,13 @@ void Batch::Execute(const std::vector<Case>& cases, int runs, Progress& progress
   }
   std::size_t next = 0;
   for (;;) {
-    for (; next < left.size() && children_.running() < jobs_; ++next) {
+    for (; next < left.size() && workers_.running() < jobs_; ++next) {
       Begin(static_cast<int>(next), left[next], {});
     }
-    if (children_.running() == 0) {
+    if (workers_.running() == 0) {
       return;
     }
-    const Children::Ended ended = children_.WaitForOne();
+    const Workers::Ended ended = workers_.WaitForOne();
     const Task& task = left[static_cast<std::size_t>(ended.tag)];
     Finish(task, ended.exit_code);
     failed += rows(task.truth->name).at(task.index).converged ? 0 : 1;

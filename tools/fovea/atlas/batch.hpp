@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs of one target from random starts, each in its own simulator process. Their rows are kept in a folder.
+// Runs of one target from random starts, by simulator processes. Their rows are kept in a folder.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "firmware/host/config/folder_lock.hpp"
-#include "tools/fovea/atlas/children.hpp"
 #include "tools/fovea/atlas/figures.hpp"
 #include "tools/fovea/atlas/progress.hpp"
+#include "tools/fovea/atlas/workers.hpp"
 
 namespace fovea::atlas {
 
@@ -59,7 +59,6 @@ class Batch {
 
   const Heading heading_;
   const std::string scenario_;
-  const std::filesystem::path simulator_;
   const Scene scene_;
   const Sampler sampler_;
   const std::filesystem::path folder_;
@@ -67,7 +66,7 @@ class Batch {
   std::optional<config::FolderLock> lock_;
   std::optional<RowFile> rows_;
   std::map<int, Start> starts_;  // by index, once drawn
-  Children children_;
+  Workers workers_;
 };
 
 }  // namespace fovea::atlas

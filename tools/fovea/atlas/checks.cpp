@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/atlas/checks.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -247,12 +248,40 @@ bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO, c
   return false;
 }
 
+// Whether a drawn solid of the arm hides a point of the target's outline: a flat one's corners and points
+// between them; of a ball, points of the circle that the camera sees as its outline.
+bool StartChecks::IsHidden(const StartPosture& posture, const Pose& X_BO) const {
+  constexpr int kPerSide = 4;
+  constexpr int kAround = 16;
+  const features::TargetOutline outline = scene_.servo.feature.Outline();
+  const Vec3& p_BC = posture.X_BC.p;
+  std::vector<Vec3> points{X_BO.p};
+  for (int i = 0; outline.num_points > 1 && i < outline.num_points; ++i) {
+    const Vec3 from = X_BO * outline.p_OP[static_cast<std::size_t>(i)];
+    const Vec3 to = X_BO * outline.p_OP[static_cast<std::size_t>((i + 1) % outline.num_points)];
+    for (int k = 0; k < kPerSide; ++k) {
+      points.push_back(from + k * (to - from) / kPerSide);
+    }
+  }
+  if (outline.radius > 0.0) {
+    const Vec3 away = X_BO.p - p_BC;
+    const double share = std::pow(outline.radius / away.norm(), 2);
+    const Vec3 across = outline.radius * std::sqrt(std::max(1.0 - share, 0.0)) * away.unitOrthogonal();
+    const Vec3 along = away.normalized().cross(across);
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / kAround;
+      points.push_back(X_BO.p - share * away + std::cos(angle) * across + std::sin(angle) * along);
+    }
+  }
+  return scene_.drawn->Hides(posture.q, p_BC, points);
+}
+
 bool StartChecks::ClearOfSolids(const StartPosture& posture) const { return ClearOfSolids(posture, kAtEnds); }
 
 bool StartChecks::InPicture(const Pose& X_CO) const { return InPicture(X_CO, kEdgePx); }
 
 bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO) const {
-  return ArmInTheWay(posture, X_BO, kAtEnds);
+  return ArmInTheWay(posture, X_BO, kAtEnds) || IsHidden(posture, X_BO);
 }
 
 bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO) const {
@@ -270,7 +299,7 @@ bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO) const 
       !scene_.servo.feature.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
   return X_CO.p.z() > kDepthOnTheWay && faces && !OutOfViewOnTheWay(X_CO) && InsideBarrier(posture) &&
          ClearOfSolids(posture, kOnTheWay) && !ArmInTheWay(posture, X_BO, kOnTheWay) &&
-         !BenchInTheWay(posture, X_BO, kOnTheWay);
+         !BenchInTheWay(posture, X_BO, kOnTheWay) && !IsHidden(posture, X_BO);
 }
 
 bool StartChecks::OutOfViewOnTheWay(const Pose& X_CO) const {

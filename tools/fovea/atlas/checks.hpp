@@ -29,7 +29,8 @@ class StartChecks {
   // True when the target's outline is completely 30 px inside the picture; when it is above the table.
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
-  // True when the arm is too close to itself, to the target or to a line of sight.
+  // True when the arm is too close to itself, to the target or to a line of sight, or hides a part of the
+  // target.
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when a thing or a box on the bench is in the target or in a line of sight.
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
@@ -61,6 +62,7 @@ class StartChecks {
                                  const Clear& clear) const;
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO,
                                    const Clear& clear) const;
+  [[nodiscard]] bool IsHidden(const StartPosture& posture, const model::Pose& X_BO) const;
 
   Scene scene_;
   std::vector<config::Box> boxes_;  // on the bench, and those that the servo avoids

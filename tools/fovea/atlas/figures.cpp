@@ -132,7 +132,8 @@ std::array<double, 2> Wilson95(int converged, int runs) {
 
 std::vector<std::string> AssignmentsOf(const Heading& heading, const std::vector<std::string>& truth,
                                        const Start& start) {
-  std::vector<std::string> assignments{fmt::format("run.settled_s={}", kSettledS)};
+  std::vector<std::string> assignments{fmt::format("run.settled_s={}", kSettledS),
+                                       fmt::format("run.duration_s={}", kMostS)};
   for (const auto& more : {SceneAssignments(heading.assignments), truth}) {
     assignments.insert(assignments.end(), more.begin(), more.end());
   }

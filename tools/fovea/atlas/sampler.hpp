@@ -37,7 +37,7 @@ inline constexpr std::array<const char*, kRejectionNames.size()> kRejectionWords
     "them",
     "the target's outline is not completely 30 px inside the picture",
     "the target intersects the table",
-    "the arm is too near to itself, the target or the line of sight",
+    "the arm is too near to itself, the target or the line of sight, or hides a part of the target",
     "an object or a box on the bench is in or near the target or a line of sight",
     "no posture found that reaches the goal and meets all these conditions"};
 using Rejections = std::array<std::uint64_t, kRejectionNames.size()>;

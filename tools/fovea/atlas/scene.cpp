@@ -89,6 +89,7 @@ Scene LoadScene(const std::string& target, const std::vector<std::string>& assig
   scene.camera = CameraOf(camera.intrinsics, hfov_deg);
   scene.boxes = config::MakeBoxes("bench.boxes", boxes);
   const robots::Robot robot = robots::LoadRobot(robots::FindRobot(arm, "arm.model"));
+  scene.drawn = std::make_shared<const DrawnArm>(robot);
   scene.servo = config::MakeServoConfig(servo, {robot.name, robot.model, {}}, config::MakeMount(camera),
                                         scene.camera, target_settings);
   return scene;

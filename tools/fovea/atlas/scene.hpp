@@ -3,6 +3,7 @@
 // All of it follows from the scenario's keys, so an atlas takes any arm, camera and mount.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "firmware/core/features/target_feature.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/vision/intrinsics.hpp"
+#include "tools/fovea/atlas/drawn_arm.hpp"
 
 namespace fovea::atlas {
 
@@ -17,6 +19,7 @@ struct Scene {
   config::ServoConfig servo;  // as the simulator's servo has it
   vision::Intrinsics camera;
   std::vector<config::Box> boxes;  // on the bench, known to the servo or not
+  std::shared_ptr<const DrawnArm> drawn;
 };
 
 // Where the target has to be in the camera.

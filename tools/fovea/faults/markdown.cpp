@@ -49,6 +49,7 @@ constexpr const char* kWords = R"(
 | `state_missing` | a tick without a new, valid state of the arm |
 | `target_not_found` | the target was not found in a picture |
 | `measurement_left_out` | a measurement that does not fit the target's motion, or is too old |
+| `plan_late` | no plan came in time: the visual law goes on alone |
 | `boot goes on`, `hold goes on` | the servo stays in this mode longer than without the fault: the arm is not ready, or no target is found |
 | `limit ...` | nothing else noticed the fault; this limit acts only with the fault |
 

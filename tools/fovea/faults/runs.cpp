@@ -43,7 +43,7 @@ Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume, RunKind kind
       folder_(folder),
       seed_(seed),
       jobs_(static_cast<std::size_t>(jobs)),
-      simulator_(bench::SimulatorBeside(kind_.program)) {
+      workers_(bench::SimulatorBeside(kind_.program)) {
   std::error_code error;
   fs::create_directories(folder_ / "runs", error);
   if (error) {
@@ -92,11 +92,10 @@ void Runs::Execute(const std::vector<Job>& jobs, atlas::Progress& progress) {
   int broken = 0;
   std::size_t next = 0;
   for (;;) {
-    for (; next < left.size() && children_.running() < jobs_; ++next) {
+    for (; next < left.size() && workers_.running() < jobs_; ++next) {
       const Job& job = *left[next];
-      std::vector<std::string> command{
-          simulator_, "run",   job.scenario,      "--seed", std::to_string(job.seed.value_or(seed_)),
-          "--json",   "--out", File(job.name, "")};
+      std::vector<std::string> command{job.scenario, "--seed", std::to_string(job.seed.value_or(seed_)),
+                                       "--json",     "--out",  File(job.name, "")};
       // One renderer keeps one core busy.
       for (const char* option : {"--pictures", "failed", "--renderers", "1"}) {
         command.emplace_back(option);
@@ -108,13 +107,13 @@ void Runs::Execute(const std::vector<Job>& jobs, atlas::Progress& progress) {
         command.emplace_back("--set");
         command.push_back(assignment);
       }
-      children_.Start(static_cast<int>(next), command, File(job.name, ".json"), File(job.name, ".txt"),
-                      kRunLimit);
+      workers_.Start(static_cast<int>(next), command, File(job.name, ".json"), File(job.name, ".txt"),
+                     kRunLimit);
     }
-    if (children_.running() == 0) {
+    if (workers_.running() == 0) {
       return;
     }
-    const atlas::Children::Ended ended = children_.WaitForOne();
+    const atlas::Workers::Ended ended = workers_.WaitForOne();
     const Job& job = *left[static_cast<std::size_t>(ended.tag)];
     Finish(job, ended.exit_code);
     broken += SummaryOf(job.name).is_null() ? 1 : 0;

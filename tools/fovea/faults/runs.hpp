@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "firmware/host/config/folder_lock.hpp"
-#include "tools/fovea/atlas/children.hpp"
 #include "tools/fovea/atlas/progress.hpp"
+#include "tools/fovea/atlas/workers.hpp"
 
 namespace fovea::matrix {
 
@@ -60,10 +60,9 @@ class Runs {
   std::optional<config::FolderLock> lock_;
   int seed_;
   std::size_t jobs_;
-  std::filesystem::path simulator_;
   std::ofstream stream_;
   std::map<std::string, nlohmann::json> rows_;
-  atlas::Children children_;
+  atlas::Workers workers_;
 };
 
 }  // namespace fovea::matrix

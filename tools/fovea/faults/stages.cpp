@@ -41,7 +41,7 @@ bool MakesSense(const RunMode& mode, Stage stage, const Fault& fault) {
 std::vector<std::string> LeftOut() {
   return {
       "`home` and `flange-circle` have no camera: faults of frames, pictures and detections cannot affect "
-      "them, and they have no target to lose, so they do not coast",
+      "them, nor does a planner, and they have no target to lose, so they do not coast",
       "A fault from the start (a load or a tilted base) is in the column of Boot and stays for the whole "
       "run"};
 }

@@ -172,7 +172,14 @@ const std::vector<Fault>& Table() {
        {{kForever, {"gravity_tilt_deg=1"}, "base tilted by 1 deg", "a bench that is not levelled"},
         {kForever, {"gravity_tilt_deg=5"}, "base tilted by 5 deg", "a bench on a slope"},
         {kForever, {"gravity_tilt_deg=30"}, "base tilted by 30 deg", "another mounting than configured"}},
-       true}};
+       true},
+      {"planner loss",
+       "planner_loss",
+       "planner_loss",
+       true,
+       {{0.2, {}, "0.2 s", "a busy computer: the plan comes late"},
+        {3.0, {}, "3 s", "twice as long as the servo waits for a plan"},
+        {kForever, {}, "for ever", "a planner that has died"}}}};
   return table;
 }
 
