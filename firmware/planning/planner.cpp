@@ -6,6 +6,7 @@
 
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/planning/goal_search.hpp"
+#include "firmware/planning/horizon_search.hpp"
 #include "firmware/planning/motion_proof.hpp"
 #include "firmware/planning/path_search.hpp"
 #include "firmware/planning/path_speed.hpp"
@@ -40,19 +41,28 @@ constexpr int kSweeps = 12;    // of straightening
 constexpr int kSlowings = 24;  // of a motion that the guard would slow down
 constexpr double kSlower = 0.85;
 
+bool IsOffWhole(const PlanRequest& request) noexcept {
+  return request.kind == PlanRequest::Kind::kPlan ||
+         (request.q_off.size() == request.start.q.size() && request.q_off.allFinite());
+}
+
 bool IsWhole(const config::ServoConfig& config, const PlanRequest& request) noexcept {
   const trajectory::Reference& start = request.start;
   const Eigen::Index n = config.arm.num_joints;
   return start.q.size() == n && start.dq.size() == n && start.ddq.size() == n && start.q.allFinite() &&
-         start.dq.allFinite() && start.ddq.allFinite() && request.X_BO.R.allFinite() &&
-         request.X_BO.p.allFinite() && request.normal_B.allFinite();
+         start.dq.allFinite() && start.ddq.allFinite() && request.v_BO.allFinite() && IsOffWhole(request) &&
+         request.X_BO.R.allFinite() && request.X_BO.p.allFinite() && request.normal_B.allFinite();
 }
 
 }  // namespace
 
 struct Planner::Parts {
   Parts(const config::ServoConfig& servo, const EyeReach& reach)
-      : config(servo), space(servo, reach), limits(LimitsOfPlan(servo)), speed(limits, kMostPoints) {
+      : config(servo),
+        space(servo, reach),
+        limits(LimitsOfPlan(servo)),
+        horizon(servo),
+        speed(limits, kMostPoints) {
     path.reserve(kMostCorners);
     corners.reserve(kMostCorners);
   }
@@ -68,6 +78,7 @@ struct Planner::Parts {
   PostureSpace space;
   JointLimits limits;
   GoalSearch goals;
+  HorizonSearch horizon;
   PathSearch search;
   PathShortener shortener;
   PathSpeed speed;
@@ -217,7 +228,8 @@ void Planner::Compute(const PlanRequest& request, Plan& plan) noexcept {
     plan.outcome = PlanOutcome::kNotPlanned;
     return;
   }
-  if (!request.start.IsAtRest()) {
+  const bool is_horizon = request.kind == PlanRequest::Kind::kHorizon;
+  if (!is_horizon && !request.start.IsAtRest()) {
     plan.outcome = PlanOutcome::kStartMoves;
     return;
   }
@@ -225,13 +237,14 @@ void Planner::Compute(const PlanRequest& request, Plan& plan) noexcept {
     plan.p_BO[i] = request.X_BO.p[static_cast<Eigen::Index>(i)];
   }
   plan.q_BO = model::QuaternionOf(request.X_BO.R);
-  plan.outcome = parts.space.Begin(request, plan.blocker);
-  if (plan.outcome == PlanOutcome::kFound) {
-    Work work(request.budget);
+  Work work(request.budget);
+  if (is_horizon) {
+    plan.outcome = parts.horizon.Search(request, work, plan);
+  } else if (plan.outcome = parts.space.Begin(request, plan.blocker); plan.outcome == PlanOutcome::kFound) {
     Draws draws(request.seed);
     plan.outcome = parts.Search(request, work, draws, plan);
-    parts.effort.work = request.budget - work.left();
   }
+  parts.effort.work = request.budget - work.left();
   if (!plan.IsFound()) {
     plan.num_points = 0;
     plan.period_s = 0.0;

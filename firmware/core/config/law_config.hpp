@@ -13,7 +13,7 @@
 namespace fovea::config {
 
 // The visual laws; core/control/visual_laws.hpp has what each computes.
-enum class Law : std::uint8_t { kIbvs, kPbvs, kHybrid, kMean, kDesired, kSecondOrder };
+enum class Law : std::uint8_t { kIbvs, kPbvs, kHybrid, kMean, kDesired, kSecondOrder, kPredictive };
 
 struct LawTraits {
   const char* name;
@@ -22,12 +22,13 @@ struct LawTraits {
 };
 
 // In the order of Law.
-inline constexpr std::array<LawTraits, 6> kLaws{{{"ibvs"},
+inline constexpr std::array<LawTraits, 7> kLaws{{{"ibvs"},
                                                  {"pbvs", features::FeatureForm::kPose},
                                                  {"hybrid", features::FeatureForm::kHybrid},
                                                  {"mean"},
                                                  {"desired"},
-                                                 {"second_order"}}};
+                                                 {"second_order"},
+                                                 {"predictive"}}};
 
 inline constexpr std::array<const char*, kLaws.size()> kLawNames = [] {
   std::array<const char*, kLaws.size()> names{};
@@ -84,7 +85,9 @@ void Fields(Visitor& v, Config& c) noexcept {
        "visual law; auto: that of servo.feature, ibvs unless it is pose or hybrid. ibvs: on the picture; "
        "pbvs: on the pose; hybrid: place in the picture, ln Z and turn; mean, desired: on the picture, "
        "with the mean of the interaction matrices of now and of the goal, or that of the goal; "
-       "second_order: on the picture, commands its acceleration"},
+       "second_order: on the picture, commands its acceleration; predictive: as mean, along horizons that "
+       "the "
+       "planner beside the tick computes for the whole picture, ahead of all limits"},
       c.law, kLawNames);
   v.Number({"servo.smooth_start_s", "s", "the law is blended in over this time"}, c.smooth_start_s, 0.001,
            10.0);

@@ -6,14 +6,22 @@
 // They differ in three ways: in the feature (config::LawTraits::form), in the matrix that relates its change
 // to the camera's motion, and in how its motion follows from its error.
 //
-//   law            feature                  known for
-//   ibvs           picture                  bears wrong calibration; retreats from turns about the optical
-//   axis mean           picture                  right to second order; straighter from far away desired
-//   picture                  as mean, and never singular unless the goal is; detours pbvs           pose a
-//   straight way of the target's centre in C; corners may leave the
-//                                           picture
-//   hybrid         x, y, ln Z, turn         no local minimum; the centre's way in the picture is straight
-//   second_order   picture                  accelerates smoothly from any motion; no overshoot
+//   law            feature            known for
+//
+//   ibvs           picture            bears wrong calibration; retreats from turns about the optical axis
+//
+//   mean           picture            right to second order; straighter from far away
+//
+//   desired        picture            as mean, and never singular unless the goal is; detours
+//
+//   pbvs           pose               a straight way of the target's centre in C; corners may leave the
+//   picture
+//
+//   hybrid         x, y, ln Z, turn   no local minimum; the centre's way in the picture is straight
+//
+//   second_order   picture            accelerates smoothly from any motion; no overshoot
+//
+//   predictive     picture            sees limits ahead; as mean, where no horizon is there (horizon.hpp)
 #pragma once
 
 #include <array>
@@ -84,16 +92,19 @@ struct VisualLawLine {
   MotionChoice motion;
   // It starts smoothly by itself: servo.smooth_start_s does not apply.
   bool commands_acceleration = false;
+  // It follows horizons of the planner; its matrix and motion are for the time without one.
+  bool predicts = false;
 };
 
 // In the order of config::Law.
 inline constexpr std::array<VisualLawLine, config::kLaws.size()> kVisualLaws{
-    {{CurrentInteraction, FirstOrder},           // ibvs
-     {CurrentInteraction, FirstOrder},           // pbvs
-     {CurrentInteraction, FirstOrder},           // hybrid
-     {MeanInteraction, FirstOrder},              // mean
-     {DesiredInteraction, FirstOrder},           // desired
-     {CurrentInteraction, SecondOrder, true}}};  // second_order
+    {{CurrentInteraction, FirstOrder},              // ibvs
+     {CurrentInteraction, FirstOrder},              // pbvs
+     {CurrentInteraction, FirstOrder},              // hybrid
+     {MeanInteraction, FirstOrder},                 // mean
+     {DesiredInteraction, FirstOrder},              // desired
+     {CurrentInteraction, SecondOrder, true},       // second_order
+     {MeanInteraction, FirstOrder, false, true}}};  // predictive
 
 [[nodiscard]] constexpr const VisualLawLine& LineOf(config::Law law) noexcept {
   return kVisualLaws[static_cast<std::size_t>(law)];

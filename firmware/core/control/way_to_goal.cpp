@@ -99,6 +99,7 @@ void Change(Way to, PlanEvent event, std::int64_t now_ns, WayToGoal& way) noexce
   way.note.event = event;
   way.since_ns = now_ns;
   way.asked_ns = -1;
+  way.horizon_ns = -1;
   way.stalled_ns = 0;
   way.held_ns = 0;
   way.least_off = HUGE_VAL;
@@ -154,11 +155,6 @@ model::Vec6 GoalTwist(const config::ServoConfig& config, const WaySight& sight, 
   return twist;
 }
 
-bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight, const Plan& plan) noexcept {
-  const double turn = GoalTwist(config, sight, plan, model::Pose{}).tail<3>().norm();
-  return !((sight.X_BO.p - PlaceOf(plan)).norm() < kElsewhereM) || !(turn < kElsewhereRad);
-}
-
 // Takes a plan for this start: from its end on, the joints follow the estimate.
 void Take(const config::ServoConfig& config, const Plan& plan, const WaySight& sight,
           WayToGoal& way) noexcept {
@@ -185,14 +181,10 @@ void AwaitPlan(const config::ServoConfig& config, const WaySight& sight, const P
   if (way.asked_ns < 0) {
     way.pace = std::max(way.pace - hal::kTickPeriodS / kSlowingS, 0.0);
     if (sight.reference.IsAtRest()) {
-      way.asked_ns = sight.now_ns;
       way.is_fresh = false;
-      ++way.note.plans_asked;
       ++way.note.tries;
       way.note.event = PlanEvent::kAsked;
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        way.note.normal_B[static_cast<std::size_t>(i)] = sight.normal_B[i];
-      }
+      Ask(sight, way);
     }
     return;
   }
@@ -257,6 +249,19 @@ void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const 
 }
 
 }  // namespace
+
+bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight, const Plan& plan) noexcept {
+  const double turn = GoalTwist(config, sight, plan, model::Pose{}).tail<3>().norm();
+  return !((sight.X_BO.p - PlaceOf(plan)).norm() < kElsewhereM) || !(turn < kElsewhereRad);
+}
+
+void Ask(const WaySight& sight, WayToGoal& way) noexcept {
+  way.asked_ns = sight.now_ns;
+  ++way.note.plans_asked;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    way.note.normal_B[static_cast<std::size_t>(i)] = sight.normal_B[i];
+  }
+}
 
 void WayToGoal::Restart() noexcept {
   const hal::WayNote before = note;

@@ -45,16 +45,18 @@ struct WayToGoal {
   bool planner_late = false;    // the last request had no answer in time
   bool keeps_posture = false;   // q_end reaches the goal: the law is pulled towards it
   std::int64_t since_ns = 0;    // time of the last change of the way, which starts smoothly
-  std::int64_t asked_ns = -1;   // awaiting a plan: when it was asked for; -1: the arm still stops
+  std::int64_t asked_ns = -1;   // when the last plan or horizon was asked for; -1: none since the way changed
   std::int64_t stalled_ns = 0;  // law: time with active limits less time without, since the last progress
   std::int64_t held_ns = 0;     // plan: time held up less time not held up
-  std::int64_t again_ns = 0;    // no new plan is asked for before because the target moved
-  double pace = 1.0;            // law: share of its speed
-  double least_off = HUGE_VAL;  // law: smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
-  double t = 0.0;               // plan: time along it [s]
-  double trust = 0.0;           // in the eye, 0 to 1: how fast a plan is followed
-  model::VecN shift;            // plan: of its end, for the present estimate [num_joints]
-  model::VecN q_end;            // of the last plan [num_joints]
+  std::int64_t horizon_ns = -1;  // law: start of the horizon that the arm follows; -1: it follows none
+  std::int64_t taken_ns = -1;    // start of the last horizon that came
+  std::int64_t again_ns = 0;     // no new plan is asked for before because the target moved
+  double pace = 1.0;             // law: share of its speed
+  double least_off = HUGE_VAL;   // law: smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
+  double t = 0.0;                // plan: time along it [s]
+  double trust = 0.0;            // in the eye, 0 to 1: how fast a plan is followed
+  model::VecN shift;             // plan: of its end, for the present estimate [num_joints]
+  model::VecN q_end;             // of the last plan [num_joints]
   model::Vec3 p_BO_end = model::Vec3::Zero();  // the target that it reaches [m]
   model::Mat6N pull;                           // transposed: a twist of the camera at q_end to joints
 
@@ -103,6 +105,13 @@ void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& refer
 
 // True if the last plan's end, `q_end`, is a good posture for a target at `p_BO` [m]. Real-time: yes.
 [[nodiscard]] bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept;
+
+// True if the target is not where `plan` takes it to be. Real-time: yes.
+[[nodiscard]] bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight,
+                               const trajectory::Plan& plan) noexcept;
+
+// Asks the planner from this tick's reference. Real-time: yes.
+void Ask(const WaySight& sight, WayToGoal& way) noexcept;
 
 // The limits that can block a path. All others only slow the motion down.
 inline constexpr hal::LimitSet kBarriers =

@@ -14,7 +14,7 @@
 
 namespace fovea::link {
 
-inline constexpr std::uint8_t kProtocolVersion = 9;
+inline constexpr std::uint8_t kProtocolVersion = 10;
 inline constexpr std::size_t kMaxPayload = 4096;
 inline constexpr std::size_t kFrameOverhead = 10;  // version, kind, sequence, CRC
 inline constexpr std::size_t kMaxFrame = kMaxPayload + kFrameOverhead;

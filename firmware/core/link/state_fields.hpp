@@ -93,6 +93,8 @@ void WayFields(Archive& a, T& w) noexcept {
   a(w.asked_ns);
   a(w.stalled_ns);
   a(w.held_ns);
+  a(w.horizon_ns);
+  a(w.taken_ns);
   a(w.again_ns);
   a(w.pace);
   a(w.least_off);

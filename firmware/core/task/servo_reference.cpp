@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/core/control/goal_size.hpp"
+#include "firmware/core/control/horizon.hpp"
 #include "firmware/core/features/equal_turn.hpp"
 #include "firmware/core/features/hold_orientation.hpp"
 #include "firmware/core/guard/following.hpp"
@@ -49,6 +50,7 @@ void ServoTask::TakePlan(const trajectory::PlanPart& part) noexcept {
 void ServoTask::ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept {
   TakePlan(plan);
   state_.way.note.event = hal::PlanEvent::kNone;
+  state_.on_horizon = false;
   state_.feature_valid = state_.prediction.known && ComputeFeature();
   if (state_.feature_valid) {
     control::ChooseInteraction(config_.law, goal_.L_s, state_.feature);
@@ -91,6 +93,7 @@ void ServoTask::ChooseTheWay() noexcept {
   if (state_.way.note.way == hal::Way::kPlan) {
     control::FollowPlan(state_.plans.plan(), state_.reference, sight.is_seen, state_.way, state_.plan_step);
   }
+  state_.on_horizon = control::FollowHorizon(config_, sight, state_.plans, state_.way, state_.plan_step);
 }
 
 // Target feature, plus orientation-hold rows if enabled.
@@ -168,8 +171,9 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
 // it is not finite.
 bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
+  const bool ahead = planned || state_.on_horizon;
   const bool accelerates = control::LineOf(config_.law.law).commands_acceleration;
-  if (!planned && !accelerates) {
+  if (!ahead && !accelerates) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s =
         static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
@@ -184,7 +188,7 @@ bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
   if (disc.count > 0) {
     target.normal_C = state_.X_BC.R.transpose() * disc.best().normal_B;
   }
-  control::ResolveMotion(config_, planned ? state_.plan_step.task : state_.law.task,
+  control::ResolveMotion(config_, ahead ? state_.plan_step.task : state_.law.task,
                          {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, planned},
                          state_.resolved);
   if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
@@ -192,9 +196,9 @@ bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
   }
   wish = guard::MotionWish::Velocity(state_.resolved.dq);
   state_.limits = state_.resolved.limits;
-  if (state_.limits == 0 && (planned || accelerates)) {
+  if (state_.limits == 0 && (ahead || accelerates)) {
     const model::VecN ddq =
-        planned ? state_.plan_step.ddq : model::VecN((wish.dq - state_.reference.dq) / hal::kTickPeriodS);
+        ahead ? state_.plan_step.ddq : model::VecN((wish.dq - state_.reference.dq) / hal::kTickPeriodS);
     wish.ddq = SoundRates(config_, wish.dq, ddq);
   }
   return true;

@@ -74,7 +74,8 @@ struct ServoState {
   control::VisualLawOutput law;
   control::WayToGoal way;          // the law, or a plan to the target
   trajectory::PlanReceiver plans;  // the last plan that was asked for
-  control::PlanStep plan_step;     // in way kPlan
+  control::PlanStep plan_step;     // in way kPlan, and on a horizon
+  bool on_horizon = false;         // of a predictive law, in this tick
 
   // guard
   control::ResolvedMotion resolved;

@@ -12,8 +12,15 @@
 namespace fovea::trajectory {
 
 struct PlanRequest {
-  Reference start;                             // from which the arm leaves [num_joints], at rest
+  // A plan leads from rest to rest at the goal. A horizon is what a predictive law does next: it leads from
+  // any motion towards the goal, and ends at rest after a fixed time, wherever that is.
+  enum class Kind : std::uint8_t { kPlan, kHorizon };
+
+  Kind kind = Kind::kPlan;
+  Reference start;                             // from which the arm leaves [num_joints]; at rest for a plan
+  model::VecN q_off;                           // [num_joints] measured less start, a horizon allows for it
   model::Pose X_BO;                            // the target's estimate; a ball's orientation does not matter
+  model::Vec3 v_BO = model::Vec3::Zero();      // the target's velocity, which a horizon continues [m/s]
   model::Vec3 normal_B = model::Vec3::Zero();  // of a disc, away from a camera that sees it; 0: unknown
   std::int64_t stamp_ns = 0;                   // of the estimate
   std::uint64_t seed = 1;

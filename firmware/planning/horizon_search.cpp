@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/planning/horizon_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/core/barriers/field_of_view_barrier.hpp"
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/planning/time_path.hpp"
+
+namespace fovea::planning {
+namespace {
+
+using trajectory::PlanOutcome;
+
+constexpr int kControlPoints = 17;  // control points
+constexpr int kFixed = 3;           // of them, at the start
+constexpr int kFree = kControlPoints - kFixed - 2;
+constexpr int kKnots = kControlPoints - 2;  // from the start to the end, both included
+constexpr double kLeastKnotPeriod = 0.05;   // between control points, unless a joint's jerk needs longer [s]
+constexpr int kNewtonSteps = 4;             // of Gauss and Newton
+constexpr int kStepHalvings = 3;            // of a step that makes it worse
+constexpr double kLongestStep = 0.3;        // of a step [rad, m]
+constexpr double kOfVelocity = 1e-3;        // weight beside the features' squared errors [s^2]
+constexpr double kOfAcceleration = 1e-5;    // [s^4]
+constexpr double kOfEnd = 5.0;              // weight of the last knot
+constexpr double kRoomInPicture = 0.01;     // before the picture's edges, normalised
+constexpr double kSolidRoom = 0.003;        // before all that the arm can collide with [m]
+constexpr double kNearSolid = 0.15;         // a barrier farther away has no row [m]
+constexpr int kWorkOfKnot = 4;              // postures that a linearised knot counts for
+constexpr int kWorkOfProgram = 200;         // a quadratic program
+constexpr int kRowsOfKnot = 4 + barriers::SolidBarriers::kMost;
+
+// Shares of the control points `knot`, `knot` + 1, `knot` + 2 in the joints at a knot.
+constexpr std::array<double, 3> kShares{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
+
+// The number of the free control point that point `i` is, i >= kFixed: the last three are one.
+constexpr int FreeOf(int i) noexcept { return std::min(i - kFixed, kFree - 1); }
+
+// Long enough that a change of the acceleration from one end of its range to the other keeps the jerk.
+double PeriodOf(const JointLimits& limits, int num_joints) noexcept {
+  double period = kLeastKnotPeriod;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(num_joints); ++i) {
+    period = std::max(period, 2.0 * limits[i].a_max / limits[i].j_max);
+  }
+  return period;
+}
+
+}  // namespace
+
+HorizonSearch::HorizonSearch(const config::ServoConfig& config)
+    : config_(config),
+      num_joints_(config.arm.num_joints),
+      limits_(LimitsOfPlan(config)),
+      period_s_(PeriodOf(limits_, num_joints_)),
+      solid_(config),
+      outline_(config.feature.Outline()),
+      program_(kFree * num_joints_, 3 * kControlPoints * num_joints_ + kKnots * kRowsOfKnot),
+      c_(kFree * num_joints_),
+      trial_(kFree * num_joints_) {}
+
+model::VecN HorizonSearch::Point(const Eigen::VectorXd& c, int i) const noexcept {
+  return i < kFixed ? first_[static_cast<std::size_t>(i)]
+                    : model::VecN(c.segment(FreeOf(i) * num_joints_, num_joints_));
+}
+
+model::VecN HorizonSearch::At(const Eigen::VectorXd& c, int knot) const noexcept {
+  model::VecN q = model::VecN::Zero(num_joints_);
+  for (int i = 0; i < 3; ++i) {
+    q += kShares[static_cast<std::size_t>(i)] * Point(c, knot + i);
+  }
+  return q;
+}
+
+features::TargetInCamera HorizonSearch::TargetAt(const model::Pose& X_BC, int knot) const noexcept {
+  const model::Pose X_BO{X_BO_.R, X_BO_.p + knot * period_s_ * v_BO_};
+  return {X_BC.Inverse() * X_BO};
+}
+
+bool HorizonSearch::See(const model::VecN& q, int knot, Knot& seen) const noexcept {
+  model::ArmPoses poses;
+  model::ComputePoses(config_.arm, q + q_off_, poses);
+  model::Mat6N J_C;
+  model::ComputeJacobian(config_.arm, poses, config_.X_EC, J_C);
+  features::FeatureState feature;
+  if (!config_.feature.Compute(TargetAt(poses.X_BE * config_.X_EC, knot), feature)) {
+    return false;
+  }
+  seen.e = feature.s - feature.s_star;
+  seen.J = feature.L_s * J_C;
+  return true;
+}
+
+// The motion goes on with the start's velocity for a period, and stands then.
+void HorizonSearch::Begin(const trajectory::PlanRequest& request) noexcept {
+  X_BO_ = request.X_BO;
+  v_BO_ = request.v_BO;
+  q_off_ = request.q_off;
+  const double T = period_s_;
+  const model::VecN step = T * request.start.dq;
+  const model::VecN bend = T * T * request.start.ddq;
+  first_[1] = request.start.q - bend / 6.0;
+  first_[0] = first_[1] - step + 0.5 * bend;
+  first_[2] = first_[1] + step + 0.5 * bend;
+  for (int i = 0; i < kFree; ++i) {
+    c_.segment(i * num_joints_, num_joints_) = first_[2];
+  }
+}
+
+double HorizonSearch::Cost(const Eigen::VectorXd& c, Work& work) noexcept {
+  double cost = 0.0;
+  Knot seen;
+  for (int knot = 1; knot < kKnots; ++knot) {
+    work.Spend();
+    if (!See(At(c, knot), knot, seen)) {
+      return HUGE_VAL;
+    }
+    cost += (knot == kKnots - 1 ? kOfEnd : 1.0) * seen.e.squaredNorm();
+  }
+  for (int i = 1; i + 2 < kControlPoints; ++i) {
+    const model::VecN step = (Point(c, i + 1) - Point(c, i)) / period_s_;
+    const model::VecN bend =
+        (Point(c, i + 2) - 2.0 * Point(c, i + 1) + Point(c, i)) / (period_s_ * period_s_);
+    cost += kOfVelocity * step.squaredNorm() + kOfAcceleration * bend.squaredNorm();
+  }
+  return cost;
+}
+
+// Costs and rows of the control points themselves, joint by joint.
+void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
+  using Row = HorizonProgram::Row;
+  struct Difference {
+    int size;
+    std::array<double, 3> share;
+    double weight;
+  };
+  const double T = period_s_;
+  const std::array<Difference, 2> differences{{{2, {-1.0, 1.0, 0.0}, kOfVelocity / (T * T)},
+                                               {3, {1.0, -2.0, 1.0}, kOfAcceleration / (T * T * T * T)}}};
+  for (int j = 0; j < num_joints_; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const std::array<double, 2> most{T * limits_[k].v_max, T * T * limits_[k].a_max};
+    for (std::size_t d = 0; d < differences.size(); ++d) {
+      const Difference& difference = differences[d];
+      for (int i = kFixed - difference.size + 1; i + difference.size <= kControlPoints - 1; ++i) {
+        double value = 0.0;
+        std::array<double, kFree> share{};
+        for (int p = 0; p < difference.size; ++p) {
+          const double s = difference.share[static_cast<std::size_t>(p)];
+          value += s * Point(c, i + p)[j];
+          if (i + p >= kFixed) {
+            share[static_cast<std::size_t>(FreeOf(i + p))] += s;
+          }
+        }
+        Row* const row = program_.NewRow();
+        if (row == nullptr) {
+          return;
+        }
+        for (int a = 0; a < kFree; ++a) {
+          const double s = share[static_cast<std::size_t>(a)];
+          if (s == 0.0) {
+            continue;
+          }
+          row->Add(a * num_joints_ + j, s);
+          program_.g()[a * num_joints_ + j] += difference.weight * s * value;
+          for (int b = 0; b < kFree; ++b) {
+            program_.H()(a * num_joints_ + j, b * num_joints_ + j) +=
+                difference.weight * s * share[static_cast<std::size_t>(b)];
+          }
+        }
+        row->low = -most[d] - value;
+        row->most = most[d] - value;
+      }
+    }
+    const model::Joint& joint = config_.arm.joints[k];
+    for (int a = 0; a < kFree; ++a) {
+      const double value = c[a * num_joints_ + j];
+      Row* const row = program_.NewRow();
+      if (row == nullptr) {
+        return;
+      }
+      row->Add(a * num_joints_ + j, 1.0);
+      const double margin = config_.guard.joint_position_margin;
+      row->low = std::clamp(joint.q_min + margin - value, -kLongestStep, 0.0);
+      row->most = std::clamp(joint.q_max - margin - value, 0.0, kLongestStep);
+    }
+  }
+}
+
+void HorizonSearch::AddBarrier(int knot, const barriers::Barrier& barrier, double room) noexcept {
+  HorizonProgram::Row* const row = barrier.value < HUGE_VAL ? program_.NewRow() : nullptr;
+  if (row == nullptr) {
+    return;
+  }
+  std::array<double, kFree> share{};
+  for (int i = 0; i < 3; ++i) {
+    if (knot + i >= kFixed) {
+      share[static_cast<std::size_t>(FreeOf(knot + i))] += kShares[static_cast<std::size_t>(i)];
+    }
+  }
+  for (int a = 0; a < kFree; ++a) {
+    for (int j = 0; j < num_joints_ && share[static_cast<std::size_t>(a)] != 0.0; ++j) {
+      row->Add(a * num_joints_ + j, share[static_cast<std::size_t>(a)] * barrier.gradient[j]);
+    }
+  }
+  row->low = std::min(barrier.margin + room - barrier.value, 0.0);  // past it: not further
+  row->most = HUGE_VAL;
+}
+
+// The feature's error at a knot, and what the arm must keep there.
+void HorizonSearch::AddKnot(const Eigen::VectorXd& c, int knot, Work& work) noexcept {
+  for (int i = 0; i < kWorkOfKnot; ++i) {
+    work.Spend();
+  }
+  const model::VecN q = At(c, knot);
+  Knot seen;
+  if (!See(q, knot, seen)) {
+    return;
+  }
+  const double weight = knot == kKnots - 1 ? kOfEnd : 1.0;
+  const model::MatN G = weight * (seen.J.transpose() * seen.J);
+  const model::VecN g = weight * (seen.J.transpose() * seen.e);
+  for (int i = 0; i < 3; ++i) {
+    if (knot + i < kFixed) {
+      continue;
+    }
+    const int a = FreeOf(knot + i) * num_joints_;
+    const double s = kShares[static_cast<std::size_t>(i)];
+    program_.g().segment(a, num_joints_) += s * g;
+    for (int k = 0; k < 3; ++k) {
+      if (knot + k >= kFixed) {
+        const int b = FreeOf(knot + k) * num_joints_;
+        program_.H().block(a, b, num_joints_, num_joints_) += s * kShares[static_cast<std::size_t>(k)] * G;
+      }
+    }
+  }
+  model::ArmPoses poses;
+  model::ComputePoses(config_.arm, q, poses);
+  model::Mat6N J_C;
+  model::ComputeJacobian(config_.arm, poses, config_.X_EC, J_C);
+  for (const barriers::Barrier& side : barriers::FieldOfViewBarriers(
+           config_.guard, {outline_, TargetAt(poses.X_BE * config_.X_EC, knot), J_C})) {
+    AddBarrier(knot, side, kRoomInPicture);
+  }
+  const barriers::ArmBodies bodies = barriers::PlaceBodies(config_.arm, poses);
+  model::LinearJacobian J_E_B;
+  model::ComputeLinearJacobian(config_.arm, poses, poses.X_BE.p, J_E_B);
+  const model::VecN rest = model::VecN::Zero(num_joints_);
+  for (int i = 0; i < solid_.size(); ++i) {
+    const barriers::Barrier row = solid_.RowOf(i, {poses, bodies, J_E_B, rest});
+    if (row.value - row.margin < kNearSolid) {
+      AddBarrier(knot, row, kSolidRoom);
+    }
+  }
+}
+
+void HorizonSearch::Linearise(const Eigen::VectorXd& c, Work& work) noexcept {
+  program_.Clear();
+  AddMotion(c);
+  for (int knot = 1; knot < kKnots; ++knot) {
+    AddKnot(c, knot, work);
+  }
+  for (int i = 0; i < kWorkOfProgram; ++i) {
+    work.Spend();
+  }
+}
+
+PlanOutcome HorizonSearch::Search(const trajectory::PlanRequest& request, Work& work,
+                                  trajectory::Plan& plan) noexcept {
+  Begin(request);
+  double cost = Cost(c_, work);
+  if (!(cost < HUGE_VAL)) {
+    return PlanOutcome::kTargetNotInSight;
+  }
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    Linearise(c_, work);
+    const Eigen::VectorXd& change = program_.Solve();
+    double share = 1.0;
+    bool is_better = false;
+    for (int halving = 0; halving <= kStepHalvings && !is_better; ++halving, share *= 0.5) {
+      trial_ = c_ + share * change;
+      const double next = Cost(trial_, work);
+      // The first step makes the motion keep its limits, which the guess does not.
+      is_better = next < cost || (step == 0 && halving == 0 && next < HUGE_VAL);
+      cost = is_better ? next : cost;
+    }
+    if (!is_better) {
+      break;
+    }
+    c_ = trial_;
+  }
+  if (!c_.allFinite()) {
+    return PlanOutcome::kNoPath;
+  }
+  plan.period_s = period_s_;
+  plan.num_points = kControlPoints;
+  for (int i = 0; i < kControlPoints; ++i) {
+    const model::VecN point = Point(c_, i);
+    for (int j = 0; j < num_joints_; ++j) {
+      plan.points[static_cast<std::size_t>(i * num_joints_ + j)] = point[j];
+    }
+  }
+  return PlanOutcome::kFound;
+}
+
+}  // namespace fovea::planning
