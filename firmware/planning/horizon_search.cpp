@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
+#include "firmware/core/control/goal_size.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/planning/time_path.hpp"
 
@@ -21,14 +22,17 @@ constexpr double kLeastKnotPeriod = 0.05;   // between control points, unless a 
 constexpr int kNewtonSteps = 4;             // of Gauss and Newton
 constexpr int kStepHalvings = 3;            // of a step that makes it worse
 constexpr double kLongestStep = 0.3;        // of a step [rad, m]
-constexpr double kOfVelocity = 1e-3;        // weight beside the features' squared errors [s^2]
-constexpr double kOfAcceleration = 1e-5;    // [s^4]
-constexpr double kOfEnd = 5.0;              // weight of the last knot
-constexpr double kRoomInPicture = 0.01;     // before the picture's edges, normalised
-constexpr double kSolidRoom = 0.003;        // before all that the arm can collide with [m]
-constexpr double kNearSolid = 0.15;         // a barrier farther away has no row [m]
-constexpr int kWorkOfKnot = 4;              // postures that a linearised knot counts for
-constexpr int kWorkOfProgram = 200;         // a quadratic program
+// The measured joints' offset from the reference is a delay while the arm moves, and then it ends with the
+// motion.
+constexpr double kSlowJoint = 0.05;       // [rad/s, m/s]
+constexpr double kOfVelocity = 0.02;      // weight beside the features' squared errors [s^2]
+constexpr double kOfAcceleration = 1e-5;  // [s^4]
+constexpr double kOfEnd = 5.0;            // weight of the last knot
+constexpr double kRoomInPicture = 0.01;   // before the picture's edges, normalised
+constexpr double kSolidRoom = 0.003;      // before all that the arm can collide with [m]
+constexpr double kNearSolid = 0.15;       // a barrier farther away has no row [m]
+constexpr int kWorkOfKnot = 4;            // postures that a linearised knot counts for
+constexpr int kWorkOfProgram = 200;       // a quadratic program
 constexpr int kRowsOfKnot = 4 + barriers::SolidBarriers::kMost;
 
 // Shares of the control points `knot`, `knot` + 1, `knot` + 2 in the joints at a knot.
@@ -86,8 +90,9 @@ bool HorizonSearch::See(const model::VecN& q, int knot, Knot& seen) const noexce
   if (!config_.feature.Compute(TargetAt(poses.X_BE * config_.X_EC, knot), feature)) {
     return false;
   }
-  seen.e = feature.s - feature.s_star;
-  seen.J = feature.L_s * J_C;
+  const double size = control::GoalSize(feature);
+  seen.e = (feature.s - feature.s_star) / size;
+  seen.J = feature.L_s * J_C / size;
   return true;
 }
 
@@ -95,7 +100,8 @@ bool HorizonSearch::See(const model::VecN& q, int knot, Knot& seen) const noexce
 void HorizonSearch::Begin(const trajectory::PlanRequest& request) noexcept {
   X_BO_ = request.X_BO;
   v_BO_ = request.v_BO;
-  q_off_ = request.q_off;
+  const double fast = request.start.dq.lpNorm<Eigen::Infinity>() / kSlowJoint;
+  q_off_ = request.q_off / (1.0 + fast * fast);
   const double T = period_s_;
   const model::VecN step = T * request.start.dq;
   const model::VecN bend = T * T * request.start.ddq;
