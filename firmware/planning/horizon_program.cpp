@@ -7,8 +7,7 @@ namespace fovea::planning {
 namespace {
 
 constexpr int kIterations = 80;
-constexpr double kPenalty = 10.0;    // of a row's deviation
-constexpr double kProximity = 1e-6;  // of an iteration's step
+constexpr double kProximity = 1e-9;  // of an iteration's step
 constexpr double kRelaxation = 1.6;
 
 }  // namespace
@@ -38,14 +37,30 @@ HorizonProgram::Row* HorizonProgram::NewRow() noexcept {
   return &rows_[num_rows_++];
 }
 
+bool HorizonProgram::SolveWithoutRows() noexcept {
+  K_ = H_;
+  K_.diagonal().array() += kProximity;
+  factor_.compute(K_);
+  x_ = -g_;
+  factor_.solveInPlace(x_);
+  return std::all_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(num_rows_),
+                     [this](const Row& row) {
+                       const double value = row.Times(x_);
+                       return value >= row.low && value <= row.most;
+                     });
+}
+
 const Eigen::VectorXd& HorizonProgram::Solve() noexcept {
+  if (SolveWithoutRows()) {
+    return x_;  // exact, which the iterations below are not in directions that hardly change the cost
+  }
   K_ = H_;
   K_.diagonal().array() += kProximity;
   for (std::size_t r = 0; r < num_rows_; ++r) {
     const Row& row = rows_[r];
     for (std::size_t i = 0; i < static_cast<std::size_t>(row.size); ++i) {
       for (std::size_t j = 0; j < static_cast<std::size_t>(row.size); ++j) {
-        K_(row.place[i], row.place[j]) += kPenalty * row.a[i] * row.a[j];
+        K_(row.place[i], row.place[j]) += row.penalty * row.a[i] * row.a[j];
       }
     }
   }
@@ -60,7 +75,7 @@ const Eigen::VectorXd& HorizonProgram::Solve() noexcept {
     for (std::size_t r = 0; r < num_rows_; ++r) {
       const Row& row = rows_[r];
       const auto k = static_cast<Eigen::Index>(r);
-      const double pull = kPenalty * z_[k] - y_[k];
+      const double pull = row.penalty * z_[k] - y_[k];
       for (std::size_t i = 0; i < static_cast<std::size_t>(row.size); ++i) {
         right_[row.place[i]] += row.a[i] * pull;
       }
@@ -68,10 +83,11 @@ const Eigen::VectorXd& HorizonProgram::Solve() noexcept {
     factor_.solveInPlace(right_);
     x_ += kRelaxation * (right_ - x_);
     for (std::size_t r = 0; r < num_rows_; ++r) {
+      const Row& row = rows_[r];
       const auto k = static_cast<Eigen::Index>(r);
-      const double relaxed = kRelaxation * rows_[r].Times(right_) + (1.0 - kRelaxation) * z_[k];
-      z_[k] = std::clamp(relaxed + y_[k] / kPenalty, rows_[r].low, rows_[r].most);
-      y_[k] += kPenalty * (relaxed - z_[k]);
+      const double relaxed = kRelaxation * row.Times(right_) + (1.0 - kRelaxation) * z_[k];
+      z_[k] = std::clamp(relaxed + y_[k] / row.penalty, row.low, row.most);
+      y_[k] += row.penalty * (relaxed - z_[k]);
     }
   }
   return x_;

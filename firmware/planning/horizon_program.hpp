@@ -26,6 +26,7 @@ class HorizonProgram {
     std::array<double, kMostEntries> a{};
     double low = 0.0;
     double most = 0.0;
+    double penalty = 1.0;  // where rows contradict each other, one with a larger penalty is kept better
 
     void Add(int at, double value) noexcept {
       place[static_cast<std::size_t>(size)] = at;
@@ -55,6 +56,9 @@ class HorizonProgram {
   [[nodiscard]] const Eigen::VectorXd& Solve() noexcept;
 
  private:
+  // True if the minimum without rows, which is left in x_, keeps them all.
+  [[nodiscard]] bool SolveWithoutRows() noexcept;
+
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
   std::vector<Row> rows_;

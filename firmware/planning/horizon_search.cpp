@@ -6,6 +6,8 @@
 
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 #include "firmware/core/control/goal_size.hpp"
+#include "firmware/core/control/visual_law.hpp"
+#include "firmware/core/features/equal_turn.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/planning/time_path.hpp"
 
@@ -14,25 +16,27 @@ namespace {
 
 using trajectory::PlanOutcome;
 
-constexpr int kControlPoints = 17;  // control points
+constexpr int kControlPoints = 21;  // control points
 constexpr int kFixed = 3;           // of them, at the start
 constexpr int kFree = kControlPoints - kFixed - 2;
 constexpr int kKnots = kControlPoints - 2;  // from the start to the end, both included
-constexpr double kLeastKnotPeriod = 0.05;   // between control points, unless a joint's jerk needs longer [s]
+constexpr double kKnotPeriod = 0.05;        // about the time until the next horizon is there [s]
 constexpr int kNewtonSteps = 4;             // of Gauss and Newton
 constexpr int kStepHalvings = 3;            // of a step that makes it worse
 constexpr double kLongestStep = 0.3;        // of a step [rad, m]
-// The measured joints' offset from the reference is a delay while the arm moves, and then it ends with the
-// motion.
-constexpr double kSlowJoint = 0.05;       // [rad/s, m/s]
-constexpr double kOfVelocity = 0.02;      // weight beside the features' squared errors [s^2]
-constexpr double kOfAcceleration = 1e-5;  // [s^4]
-constexpr double kOfEnd = 5.0;            // weight of the last knot
-constexpr double kRoomInPicture = 0.01;   // before the picture's edges, normalised
-constexpr double kSolidRoom = 0.003;      // before all that the arm can collide with [m]
-constexpr double kNearSolid = 0.15;       // a barrier farther away has no row [m]
-constexpr int kWorkOfKnot = 4;            // postures that a linearised knot counts for
-constexpr int kWorkOfProgram = 200;       // a quadratic program
+constexpr double kSlowJoint = 0.02;         // the lag of slower joints is not known [rad/s, m/s]
+constexpr double kLagMost = 0.1;            // of the arm behind its reference [s]
+// Weights beside the features' squared errors.
+constexpr double kOfFree = 0.01;           // of the velocities that the feature leaves free [s^2]
+constexpr double kFreeBelow = 1e-6;        // squared singular values of de/dq that leave a direction free
+constexpr double kOfAcceleration = 1e-5;   // [s^4]
+constexpr double kOfEnd = 5.0;             // weight of the last knot
+constexpr double kPenaltyOfMotion = 30.0;  // of the joints' limits, beside 1 of barriers
+constexpr double kRoomInPicture = 0.01;    // before the picture's edges, normalised
+constexpr double kSolidRoom = 0.003;       // before all that the arm can collide with [m]
+constexpr double kNearSolid = 0.15;        // a barrier farther away has no row [m]
+constexpr int kWorkOfKnot = 4;             // postures that a linearised knot counts for
+constexpr int kWorkOfProgram = 200;        // a quadratic program
 constexpr int kRowsOfKnot = 4 + barriers::SolidBarriers::kMost;
 
 // Shares of the control points `knot`, `knot` + 1, `knot` + 2 in the joints at a knot.
@@ -41,25 +45,15 @@ constexpr std::array<double, 3> kShares{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 // The number of the free control point that point `i` is, i >= kFixed: the last three are one.
 constexpr int FreeOf(int i) noexcept { return std::min(i - kFixed, kFree - 1); }
 
-// Long enough that a change of the acceleration from one end of its range to the other keeps the jerk.
-double PeriodOf(const JointLimits& limits, int num_joints) noexcept {
-  double period = kLeastKnotPeriod;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(num_joints); ++i) {
-    period = std::max(period, 2.0 * limits[i].a_max / limits[i].j_max);
-  }
-  return period;
-}
-
 }  // namespace
 
 HorizonSearch::HorizonSearch(const config::ServoConfig& config)
     : config_(config),
       num_joints_(config.arm.num_joints),
       limits_(LimitsOfPlan(config)),
-      period_s_(PeriodOf(limits_, num_joints_)),
       solid_(config),
       outline_(config.feature.Outline()),
-      program_(kFree * num_joints_, 3 * kControlPoints * num_joints_ + kKnots * kRowsOfKnot),
+      program_(kFree * num_joints_, 4 * kControlPoints * num_joints_ + kKnots * kRowsOfKnot),
       c_(kFree * num_joints_),
       trial_(kFree * num_joints_) {}
 
@@ -68,17 +62,48 @@ model::VecN HorizonSearch::Point(const Eigen::VectorXd& c, int i) const noexcept
                     : model::VecN(c.segment(FreeOf(i) * num_joints_, num_joints_));
 }
 
-model::VecN HorizonSearch::At(const Eigen::VectorXd& c, int knot) const noexcept {
-  model::VecN q = model::VecN::Zero(num_joints_);
+model::VecN HorizonSearch::Sum(const Eigen::VectorXd& c, int knot,
+                               const std::array<double, 3>& share) const noexcept {
+  model::VecN sum = model::VecN::Zero(num_joints_);
   for (int i = 0; i < 3; ++i) {
-    q += kShares[static_cast<std::size_t>(i)] * Point(c, knot + i);
+    sum += share[static_cast<std::size_t>(i)] * Point(c, knot + i);
   }
-  return q;
+  return sum;
+}
+
+std::array<double, 3> HorizonSearch::PlaceShares() const noexcept {
+  const double before = lag_s_ * 0.5 / kKnotPeriod;
+  return {kShares[0] + before, kShares[1], kShares[2] - before};
+}
+
+model::VecN HorizonSearch::At(const Eigen::VectorXd& c, int knot) const noexcept {
+  return Sum(c, knot, kShares);
+}
+
+std::array<HorizonSearch::Form, 2> HorizonSearch::FormsAt(const Eigen::VectorXd& c, int knot,
+                                                          const Knot& seen) const noexcept {
+  const double half = 0.5 / kKnotPeriod;
+  const double of_rate = 1.0 / (gain_ * gain_);
+  const double of_place = knot == kKnots - 1 ? kOfEnd : 1.0;
+  std::array<Form, 2> forms;
+  Form& place = forms[0];
+  place.share = PlaceShares();
+  place.value = of_place * seen.e.squaredNorm();
+  place.g = of_place * (seen.J.transpose() * seen.e);
+  place.G = of_place * (seen.J.transpose() * seen.J);
+  Form& motion = forms[1];
+  motion.share = {-half, 0.0, half};
+  const model::VecN dq = Sum(c, knot, motion.share);
+  const features::FeatureVector rate = seen.J * dq + seen.drift;
+  motion.G = of_rate * (seen.J.transpose() * seen.J) + kOfFree * seen.N;
+  motion.g = of_rate * (seen.J.transpose() * rate) + kOfFree * (seen.N * dq);
+  motion.value = of_rate * rate.squaredNorm() + kOfFree * dq.dot(seen.N * dq);
+  return forms;
 }
 
 features::TargetInCamera HorizonSearch::TargetAt(const model::Pose& X_BC, int knot) const noexcept {
-  const model::Pose X_BO{X_BO_.R, X_BO_.p + knot * period_s_ * v_BO_};
-  return {X_BC.Inverse() * X_BO};
+  const model::Pose X_BO{X_BO_.R, X_BO_.p + knot * kKnotPeriod * v_BO_};
+  return {X_BC.Inverse() * X_BO, X_BC.R.transpose() * v_BO_};
 }
 
 bool HorizonSearch::See(const model::VecN& q, int knot, Knot& seen) const noexcept {
@@ -90,19 +115,30 @@ bool HorizonSearch::See(const model::VecN& q, int knot, Knot& seen) const noexce
   if (!config_.feature.Compute(TargetAt(poses.X_BE * config_.X_EC, knot), feature)) {
     return false;
   }
-  const double size = control::GoalSize(feature);
-  seen.e = (feature.s - feature.s_star) / size;
-  seen.J = feature.L_s * J_C / size;
+  seen.size = control::GoalSize(feature);
+  seen.e = (feature.s - feature.s_star) / seen.size;
+  seen.drift = feature.ds_dt_target / seen.size;
+  seen.J = feature.L_s * J_C / seen.size;
+  model::MatN A = seen.J.transpose() * seen.J;
+  A.diagonal().array() += kFreeBelow;
+  seen.N = kFreeBelow * A.llt().solve(model::MatN::Identity(num_joints_, num_joints_));
   return true;
 }
 
 // The motion goes on with the start's velocity for a period, and stands then.
 void HorizonSearch::Begin(const trajectory::PlanRequest& request) noexcept {
-  X_BO_ = request.X_BO;
+  model::ArmPoses poses;
+  model::ComputePoses(config_.arm, request.start.q + request.q_off, poses);
+  const model::Pose X_CB = (poses.X_BE * config_.X_EC).Inverse();
+  turn_ = features::NearestTurn(config_.feature, X_CB.R * request.X_BO.R);
+  const int turns = features::TraitsOf(config_.feature.target).turns;
+  X_BO_ = {request.X_BO.R * features::EqualTurn(turn_, turns), request.X_BO.p};
   v_BO_ = request.v_BO;
-  const double fast = request.start.dq.lpNorm<Eigen::Infinity>() / kSlowJoint;
-  q_off_ = request.q_off / (1.0 + fast * fast);
-  const double T = period_s_;
+  // The joints are where the reference was a lag ago, and off by what does not end with the motion.
+  const model::VecN& dq = request.start.dq;
+  lag_s_ = std::clamp(-request.q_off.dot(dq) / (dq.squaredNorm() + kSlowJoint * kSlowJoint), 0.0, kLagMost);
+  q_off_ = request.q_off + lag_s_ * dq;
+  const double T = kKnotPeriod;
   const model::VecN step = T * request.start.dq;
   const model::VecN bend = T * T * request.start.ddq;
   first_[1] = request.start.q - bend / 6.0;
@@ -111,6 +147,10 @@ void HorizonSearch::Begin(const trajectory::PlanRequest& request) noexcept {
   for (int i = 0; i < kFree; ++i) {
     c_.segment(i * num_joints_, num_joints_) = first_[2];
   }
+  Knot seen;
+  if (See(Sum(c_, 0, PlaceShares()), 0, seen)) {
+    gain_ = control::GainAt(config_.law, seen.size * seen.e.norm());
+  }
 }
 
 double HorizonSearch::Cost(const Eigen::VectorXd& c, Work& work) noexcept {
@@ -118,16 +158,17 @@ double HorizonSearch::Cost(const Eigen::VectorXd& c, Work& work) noexcept {
   Knot seen;
   for (int knot = 1; knot < kKnots; ++knot) {
     work.Spend();
-    if (!See(At(c, knot), knot, seen)) {
+    if (!See(Sum(c, knot, PlaceShares()), knot, seen)) {
       return HUGE_VAL;
     }
-    cost += (knot == kKnots - 1 ? kOfEnd : 1.0) * seen.e.squaredNorm();
+    for (const Form& form : FormsAt(c, knot, seen)) {
+      cost += form.value;
+    }
   }
   for (int i = 1; i + 2 < kControlPoints; ++i) {
-    const model::VecN step = (Point(c, i + 1) - Point(c, i)) / period_s_;
     const model::VecN bend =
-        (Point(c, i + 2) - 2.0 * Point(c, i + 1) + Point(c, i)) / (period_s_ * period_s_);
-    cost += kOfVelocity * step.squaredNorm() + kOfAcceleration * bend.squaredNorm();
+        (Point(c, i + 2) - 2.0 * Point(c, i + 1) + Point(c, i)) / (kKnotPeriod * kKnotPeriod);
+    cost += kOfAcceleration * bend.squaredNorm();
   }
   return cost;
 }
@@ -137,17 +178,19 @@ void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
   using Row = HorizonProgram::Row;
   struct Difference {
     int size;
-    std::array<double, 3> share;
+    std::array<double, 4> share;
     double weight;
   };
-  const double T = period_s_;
-  const std::array<Difference, 2> differences{{{2, {-1.0, 1.0, 0.0}, kOfVelocity / (T * T)},
-                                               {3, {1.0, -2.0, 1.0}, kOfAcceleration / (T * T * T * T)}}};
+  constexpr double T = kKnotPeriod;
+  constexpr std::array<Difference, 3> kDifferences{{{2, {-1.0, 1.0}, 0.0},
+                                                    {3, {1.0, -2.0, 1.0}, kOfAcceleration / (T * T * T * T)},
+                                                    {4, {-1.0, 3.0, -3.0, 1.0}, 0.0}}};
   for (int j = 0; j < num_joints_; ++j) {
     const auto k = static_cast<std::size_t>(j);
-    const std::array<double, 2> most{T * limits_[k].v_max, T * T * limits_[k].a_max};
-    for (std::size_t d = 0; d < differences.size(); ++d) {
-      const Difference& difference = differences[d];
+    const std::array<double, 3> most{T * limits_[k].v_max, T * T * limits_[k].a_max,
+                                     T * T * T * limits_[k].j_max};
+    for (std::size_t d = 0; d < kDifferences.size(); ++d) {
+      const Difference& difference = kDifferences[d];
       for (int i = kFixed - difference.size + 1; i + difference.size <= kControlPoints - 1; ++i) {
         double value = 0.0;
         std::array<double, kFree> share{};
@@ -174,6 +217,7 @@ void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
                 difference.weight * s * share[static_cast<std::size_t>(b)];
           }
         }
+        row->penalty = kPenaltyOfMotion;
         row->low = -most[d] - value;
         row->most = most[d] - value;
       }
@@ -187,6 +231,7 @@ void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
       }
       row->Add(a * num_joints_ + j, 1.0);
       const double margin = config_.guard.joint_position_margin;
+      row->penalty = kPenaltyOfMotion;
       row->low = std::clamp(joint.q_min + margin - value, -kLongestStep, 0.0);
       row->most = std::clamp(joint.q_max - margin - value, 0.0, kLongestStep);
     }
@@ -220,23 +265,23 @@ void HorizonSearch::AddKnot(const Eigen::VectorXd& c, int knot, Work& work) noex
   }
   const model::VecN q = At(c, knot);
   Knot seen;
-  if (!See(q, knot, seen)) {
+  if (!See(Sum(c, knot, PlaceShares()), knot, seen)) {
     return;
   }
-  const double weight = knot == kKnots - 1 ? kOfEnd : 1.0;
-  const model::MatN G = weight * (seen.J.transpose() * seen.J);
-  const model::VecN g = weight * (seen.J.transpose() * seen.e);
-  for (int i = 0; i < 3; ++i) {
-    if (knot + i < kFixed) {
-      continue;
-    }
-    const int a = FreeOf(knot + i) * num_joints_;
-    const double s = kShares[static_cast<std::size_t>(i)];
-    program_.g().segment(a, num_joints_) += s * g;
-    for (int k = 0; k < 3; ++k) {
-      if (knot + k >= kFixed) {
-        const int b = FreeOf(knot + k) * num_joints_;
-        program_.H().block(a, b, num_joints_, num_joints_) += s * kShares[static_cast<std::size_t>(k)] * G;
+  for (const Form& form : FormsAt(c, knot, seen)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int point = knot + static_cast<int>(i);
+      if (point < kFixed) {
+        continue;
+      }
+      const int a = FreeOf(point) * num_joints_;
+      program_.g().segment(a, num_joints_) += form.share[i] * form.g;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int other = knot + static_cast<int>(k);
+        if (other >= kFixed) {
+          program_.H().block(a, FreeOf(other) * num_joints_, num_joints_, num_joints_) +=
+              form.share[i] * form.share[k] * form.G;
+        }
       }
     }
   }
@@ -298,8 +343,9 @@ PlanOutcome HorizonSearch::Search(const trajectory::PlanRequest& request, Work& 
   if (!c_.allFinite()) {
     return PlanOutcome::kNoPath;
   }
-  plan.period_s = period_s_;
+  plan.period_s = kKnotPeriod;
   plan.num_points = kControlPoints;
+  plan.turn = turn_;
   for (int i = 0; i < kControlPoints; ++i) {
     const model::VecN point = Point(c_, i);
     for (int j = 0; j < num_joints_; ++j) {

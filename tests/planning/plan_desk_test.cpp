@@ -32,6 +32,7 @@ class PlanDeskTest : public testing::Test {
     record.q_cmd = model::ToArray(start.start.q);
     record.p_BO = {start.X_BO.p.x(), start.X_BO.p.y(), start.X_BO.p.z()};
     record.q_BO = model::QuaternionOf(start.X_BO.R);
+    record.way.way = hal::Way::kAwaitPlan;
     record.way.plans_asked = number;
     record.way.tries = 1;
     return record;

@@ -201,6 +201,44 @@ inline ServoRun PlannedRun(int ticks) {
       /*far=*/2.5);  // so far that a plan is asked for
 }
 
+// A predictive law. Each horizon leads on from the reference and ends at rest where a motion at its speed
+// would be after 0.25 s. None comes for a while.
+inline ServoRun PredictiveRun(int ticks) {
+  trajectory::PlanSender sender;
+  config::ServoConfig config = ConfigOf(hal::FeatureKind::kSphere, features::FeatureForm::kSphere);
+  config.law.law = config::Law::kPredictive;
+  std::int32_t asked = 0;
+  return RunOnIdealArm(
+      "predictive", config, ticks, true,
+      [&sender](int k, task::ServoInputs& inputs) {
+        inputs.plan = k < 1200 || k > 1700 ? sender.Next() : trajectory::PlanPart{};
+      },
+      [&, config](const hal::TickRecord& record) {
+        if (record.way.plans_asked == asked) {
+          return;
+        }
+        asked = record.way.plans_asked;
+        constexpr double kPeriod = 0.1;
+        trajectory::Plan plan;
+        plan.outcome = trajectory::PlanOutcome::kFound;
+        plan.num_joints = config.arm.num_joints;
+        plan.num_points = 10;
+        plan.period_s = kPeriod;
+        plan.stamp_ns = record.stamp_ns;
+        plan.p_BO = record.p_BO;
+        plan.q_BO = record.q_BO;
+        for (int i = 0; i < plan.num_points; ++i) {
+          for (int j = 0; j < plan.num_joints; ++j) {
+            const auto k = static_cast<std::size_t>(j);
+            const double knots = std::min(i - 1.0, 2.5);
+            plan.points[static_cast<std::size_t>(i * plan.num_joints + j)] =
+                record.q_cmd[k] + knots * kPeriod * record.dq_cmd[k] + 1e-3 * (Ready()[j] - record.q_cmd[k]);
+          }
+        }
+        sender.Begin(plan);
+      });
+}
+
 // All runs. Each lasts 2600 ticks, past the keyframes of ticks 1000 and 2000.
 inline std::vector<ServoRun> AllServoRuns() {
   using features::FeatureForm;
@@ -214,6 +252,7 @@ inline std::vector<ServoRun> AllServoRuns() {
   runs.push_back(TroubledRun(2600));
   runs.push_back(TunedRun(2600));
   runs.push_back(PlannedRun(2600));
+  runs.push_back(PredictiveRun(2600));
   return runs;
 }
 

@@ -47,6 +47,7 @@ void TakeHorizon(const config::ServoConfig& config, const WaySight& sight, const
     way.note.event = hal::PlanEvent::kStale;
   }
   way.horizon_ns = fits ? plan.stamp_ns : -1;
+  way.turn = fits ? plan.turn : way.turn;
   way.held_ns = 0;
 }
 
@@ -62,7 +63,7 @@ bool FollowHorizon(const config::ServoConfig& config, const WaySight& sight,
     way.taken_ns = plan.stamp_ns;
     TakeHorizon(config, sight, plan, way);
   }
-  if (sight.is_seen && sight.is_told_apart) {
+  if (sight.is_seen && sight.is_told_apart && !IsMoving(config, sight)) {
     AskInTime(sight, sight.has_answer, way);
   }
   if (way.horizon_ns < 0) {
@@ -82,7 +83,9 @@ bool FollowHorizon(const config::ServoConfig& config, const WaySight& sight,
     plan.At(t, at);
     behind = at.q - sight.reference.q;
     plan.At(t + hal::kTickPeriodS, at);
-  }  // else the next one comes in parts, and the motion goes on as it is
+  } else {  // the next one comes in parts, and the motion goes on as it is
+    at.dq += hal::kTickPeriodS * at.ddq;
+  }
   step.task.v = at.dq + kBackGain * behind;
   step.task.J.setIdentity(at.q.size(), at.q.size());
   step.task.dq_0.setZero(at.q.size());

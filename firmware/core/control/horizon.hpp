@@ -5,7 +5,8 @@
 // begins with the reference's motion at the time of the request, leads towards the goal with all limits ahead
 // in view, and ends at rest. The arm follows the newest one and sees only its beginning. If none comes, it
 // goes on along the last one for a while, and then by the law's own matrix, which also steers until the first
-// one is there and while several poses of the target fit.
+// one is there, while several poses of the target fit, and while the target moves: a horizon looks farther
+// ahead than a motion on a curve can be foretold.
 #pragma once
 
 #include "firmware/core/control/way_to_goal.hpp"

@@ -71,11 +71,6 @@ Off OffGoal(const config::ServoConfig& config, const WaySight& sight, int turn) 
   return off;
 }
 
-bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept {
-  const double turn = config.feature.SeesOrientation() ? kMetrePerRad * sight.w_BO.norm() : 0.0;
-  return sight.v_BO.norm() + turn > kMovingTarget;
-}
-
 // A moving target is left to the law. One that leaves its plans again and again gets a new one at a bounded
 // rate.
 bool MayPlanFor(const config::ServoConfig& config, const WaySight& sight, const WayToGoal& way) noexcept {
@@ -249,6 +244,11 @@ void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const 
 }
 
 }  // namespace
+
+bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept {
+  const double turn = config.feature.SeesOrientation() ? kMetrePerRad * sight.w_BO.norm() : 0.0;
+  return sight.v_BO.norm() + turn > kMovingTarget;
+}
 
 bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight, const Plan& plan) noexcept {
   const double turn = GoalTwist(config, sight, plan, model::Pose{}).tail<3>().norm();

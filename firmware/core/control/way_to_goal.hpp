@@ -110,6 +110,10 @@ void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& refer
 [[nodiscard]] bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight,
                                const trajectory::Plan& plan) noexcept;
 
+// True if the target is faster than 0.05 m/s, a turn of 1 rad/s counted as 0.1 m/s: then the law alone
+// follows it. Real-time: yes.
+[[nodiscard]] bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept;
+
 // Asks the planner from this tick's reference. Real-time: yes.
 void Ask(const WaySight& sight, WayToGoal& way) noexcept;
 

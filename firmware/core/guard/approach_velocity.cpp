@@ -72,13 +72,13 @@ hal::LimitSet ApproachTogether(const config::ServoConfig& config, const VecN& dq
                                                 LimitsOf(config, i))
                      .Duration();
     }
-    const double longest = times.maxCoeff();
+    const double longest = times.maxCoeff();  // 0: all have their wishes, but not its rate
     for (int i = 0; i < dq.size(); ++i) {
       const double ahead = dq[i] - reference.dq[i];
       if (ahead * reference.ddq[i] < 0.0) {
         continue;  // it still accelerates away from its wish
       }
-      const double share = std::max(times[i] / longest, kLeastShare);
+      const double share = longest > 0.0 ? std::max(times[i] / longest, kLeastShare) : 1.0;
       trajectory::AxisLimits limits = LimitsOf(config, i);
       limits.a_max *= share;
       limits.j_max *= share * share;

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/core/control/visual_laws.hpp"
 #include "firmware/core/guard/motor_need.hpp"
 #include "firmware/core/model/ready_inertia.hpp"
 #include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
+#include "firmware/core/trajectory/plan_request.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/roll_pitch_yaw.hpp"
 #include "firmware/host/config/servo_keys.hpp"
@@ -151,6 +153,12 @@ void CheckTogether(const ServoConfig& c) {
         "arm.load_mass at arm.load_com is not allowed: it couples joint {} to the others and makes it {:.0f} "
         "times as heavy while they are held; at most {:g} times is allowed",
         joint + 1, coupling, model::kCouplingMost));
+  }
+  if (control::LineOf(c.law.law).predicts && !trajectory::HasGoalPosture(c)) {
+    throw InputError(
+        "servo.law = \"predictive\" is not allowed: it takes an arm with six or more joints, and a feature "
+        "that "
+        "determines the camera's whole pose (not side or corner_side, without servo.hold_orientation)");
   }
   if (c.guard.workspace_margin >= c.guard.workspace_radius) {
     throw InputError(fmt::format(

@@ -127,5 +127,27 @@ TEST(ApproachVelocityTest, ReachesAWishWithinATickUnchanged) {
   EXPECT_NEAR((together.dq - wish).norm(), 0.0, 1e-15);
 }
 
+// Velocities that are there already, but are left again at once: each joint still has its acceleration.
+TEST(ApproachVelocityTest, KeepsTheJerkWhereTheWishIsThePresentVelocity) {
+  const config::ServoConfig config = test::PandaConfig();
+  test::RandomStates random(43);
+  double most = 0.0;  // change of the acceleration in a tick, of what the jerk limit allows
+  for (int k = 0; k < 500; ++k) {
+    trajectory::Reference reference = AtRest();
+    reference.dq = random.Joints(config.arm, 0.5);
+    reference.ddq = random.Joints(config.arm, 2.0);
+    const trajectory::Reference before = reference;
+    const bool same_rate = k % 2 == 0;
+    ApproachTogether(config, before.dq, same_rate ? before.ddq : model::VecN(model::VecN::Zero(7)),
+                     reference);
+    for (int i = 0; i < 7; ++i) {
+      const double step = trajectory::PaceOf(config, i).dddq_max * hal::kTickPeriodS;
+      most = std::max(most, std::fabs(reference.ddq[i] - before.ddq[i]) / step);
+    }
+  }
+  std::cout << "largest change of the acceleration, of the limit: " << most << "\n";
+  EXPECT_LE(most, 1.0 + 1e-9);
+}
+
 }  // namespace
 }  // namespace fovea::guard

@@ -28,13 +28,13 @@ static_assert(sizeof(estimate::PredictState) == 61104);
 static_assert(sizeof(estimate::EncoderWatch) == 1096);
 static_assert(sizeof(estimate::EyeWatch) == 232);
 static_assert(sizeof(task::ModeState) == 5);
-static_assert(sizeof(control::WayToGoal) == 688);
+static_assert(sizeof(control::WayToGoal) == 704);
 static_assert(sizeof(trajectory::PlanReceiver) == 14496);
 static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
 static_assert(sizeof(task::TuningState) == 544);
-static_assert(sizeof(task::ServoState) == 101248);
+static_assert(sizeof(task::ServoState) == 101272);
 
 using Buffer = std::vector<std::uint8_t>;
 

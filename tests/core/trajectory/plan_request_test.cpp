@@ -26,6 +26,7 @@ TEST(PlanRequestTest, HoldsWhatTheRecordSays) {
   record.p_BO = {0.4, 0.5, -0.6};
   record.q_BO = model::QuaternionOf(R_BO);
   record.way.normal_B = {0.0, 0.6, 0.8};
+  record.way.way = hal::Way::kAwaitPlan;
   record.way.plans_asked = 9;
   record.way.tries = 1;
   const PlanRequest request = RequestOf(record);
@@ -38,6 +39,22 @@ TEST(PlanRequestTest, HoldsWhatTheRecordSays) {
   EXPECT_EQ(request.normal_B, model::Vec3(0.0, 0.6, 0.8));
   EXPECT_EQ(request.stamp_ns, 123'456'789);
   EXPECT_EQ(request.seed, 9U);
+  EXPECT_EQ(request.kind, PlanRequest::Kind::kPlan);
+}
+
+TEST(PlanRequestTest, LawThatSteersAsksForAHorizon) {
+  hal::TickRecord record;
+  record.command.num_joints = 7;
+  record.way.way = hal::Way::kLaw;
+  record.q_cmd[2] = 0.5;
+  record.arm.q[2] = 0.53;
+  record.v_BO = {0.1, 0.0, -0.2};
+  const PlanRequest request = RequestOf(record);
+  EXPECT_EQ(request.kind, PlanRequest::Kind::kHorizon);
+  EXPECT_EQ(request.v_BO, model::Vec3(0.1, 0.0, -0.2));
+  ASSERT_EQ(request.q_off.size(), 7);
+  EXPECT_NEAR(request.q_off[2], 0.03, 1e-12);
+  EXPECT_EQ(request.q_off[0], 0.0);
 }
 
 TEST(PlanRequestTest, LaterTriesMayWorkMoreButNotWithoutEnd) {

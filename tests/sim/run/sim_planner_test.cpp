@@ -26,6 +26,7 @@ class SimPlannerTest : public testing::Test {
     record.stamp_ns = ms * hal::kNsPerMs;
     record.command.num_joints = 7;
     record.p_BO[0] = std::nan("");
+    record.way.way = hal::Way::kAwaitPlan;
     record.way.plans_asked = 1;
     record.way.tries = 1;
     return record;

@@ -217,12 +217,25 @@ TEST(ScenarioTest, LawAndFeatureFitTogether) {
             {"square", {"servo.law=mean", "servo.feature=side"}, Law::kMean, FeatureForm::kSide},
             {"triangle", {"servo.law=second_order"}, Law::kSecondOrder, FeatureForm::kCorners},
             {"ball", {"servo.law=pbvs"}, Law::kPbvs, FeatureForm::kPose},
-            {"circle", {"servo.law=desired"}, Law::kDesired, FeatureForm::kCircle}};
+            {"circle", {"servo.law=desired"}, Law::kDesired, FeatureForm::kCircle},
+            {"triangle", {"servo.law=predictive"}, Law::kPredictive, FeatureForm::kCorners}};
   for (const auto& row : kRows) {
     const config::ServoConfig servo = DescribeRun(LoadScenario(row.scenario, row.assignments)).servo;
     EXPECT_EQ(servo.law.law, row.law) << row.scenario;
     EXPECT_EQ(servo.feature.form, row.form) << row.scenario;
   }
+}
+
+// A horizon leads to a pose.
+TEST(ScenarioTest, PredictiveLawNeedsAGoalForTheWholePose) {
+  const auto describe = [](const char* scenario, const std::vector<std::string>& keys) {
+    DescribeRun(LoadScenario(scenario, keys));
+  };
+  EXPECT_NO_THROW(describe("square", {"servo.law=predictive"}));
+  EXPECT_NO_THROW(describe("ball", {"servo.law=predictive"}));
+  EXPECT_THROW(describe("square", {"servo.law=predictive", "servo.feature=side"}), config::InputError);
+  EXPECT_THROW(describe("square", {"servo.law=predictive", "servo.feature=pose"}), config::InputError);
+  EXPECT_THROW(describe("ball", {"servo.law=predictive", "servo.hold_orientation=true"}), config::InputError);
 }
 
 TEST(ScenarioTest, OnlyARunWithAStillTargetEndsEarly) {

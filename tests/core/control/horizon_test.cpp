@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a predictive law asks for horizons, which it follows, and when it goes on without one.
+#include "firmware/core/control/horizon.hpp"
+
+#include "tests/core/control/planned_way.hpp"
+
+namespace fovea::control {
+namespace {
+
+using hal::PlanEvent;
+
+class HorizonTest : public PlannedWay {
+ protected:
+  HorizonTest() {
+    config_.law.law = config::Law::kPredictive;
+    config_.law.plans = false;
+  }
+
+  // One tick. True if the arm follows a horizon.
+  bool Tick() {
+    now_ns_ += hal::kTickPeriodNs;
+    WaySight sight = Sight();
+    sight.is_seen = is_seen_;
+    sight.has_answer = plans_.IsWhole() && plans_.plan().stamp_ns == way_.asked_ns;
+    way_.note.event = PlanEvent::kNone;
+    const bool follows = FollowHorizon(config_, sight, plans_, way_, step_);
+    if (way_.note.event != PlanEvent::kNone) {
+      events_.push_back(way_.note.event);
+    }
+    return follows;
+  }
+  // The number of `ticks` in which the arm follows a horizon.
+  int Ticks(int ticks) {
+    int follows = 0;
+    for (int i = 0; i < ticks; ++i) {
+      follows += Tick() ? 1 : 0;
+    }
+    return follows;
+  }
+  void Answer(const trajectory::Plan& plan, int parts = 1000) {
+    trajectory::PlanSender sender;
+    sender.Begin(plan);
+    for (int i = 0; i < parts && !sender.IsDone(); ++i) {
+      static_cast<void>(plans_.Take(sender.Next()));
+    }
+  }
+  void BeginHorizon() {
+    ASSERT_FALSE(Tick());
+    Answer(PlanToGoal());
+    ASSERT_TRUE(Tick());
+  }
+
+  trajectory::PlanReceiver plans_;
+};
+
+TEST_F(HorizonTest, AsksEvery40MsAndFollowsTheNewest) {
+  EXPECT_FALSE(Tick()) << "there is none yet";
+  EXPECT_EQ(way_.note.plans_asked, 1);
+  EXPECT_EQ(way_.asked_ns, now_ns_);
+  Ticks(10);
+  EXPECT_EQ(way_.note.plans_asked, 1) << "it waits for the answer";
+  Answer(PlanToGoal());
+  EXPECT_TRUE(Tick());
+  EXPECT_EQ(way_.horizon_ns, way_.asked_ns);
+  const std::int64_t first = way_.asked_ns;
+  EXPECT_EQ(Ticks(29), 29);
+  EXPECT_EQ(way_.note.plans_asked, 2);
+  EXPECT_EQ(way_.asked_ns, first + 40 * hal::kNsPerMs);
+  EXPECT_EQ(way_.horizon_ns, first) << "the last one is followed until the next is there";
+  Answer(PlanToGoal());
+  EXPECT_TRUE(Tick());
+  EXPECT_EQ(way_.horizon_ns, way_.asked_ns);
+  EXPECT_TRUE(events_.empty()) << "horizons come and go without a word";
+}
+
+TEST_F(HorizonTest, StepIsTheHorizonsMotion) {
+  BeginHorizon();
+  Ticks(100);
+  trajectory::Reference at;
+  plans_.plan().At(static_cast<double>(now_ns_ - way_.horizon_ns) * 1e-9, at);
+  reference_ = at;
+  ASSERT_TRUE(Tick());
+  trajectory::Reference next;
+  plans_.plan().At(static_cast<double>(now_ns_ - way_.horizon_ns) * 1e-9 + hal::kTickPeriodS, next);
+  EXPECT_GT(next.dq.norm(), 0.01);
+  EXPECT_LT((step_.task.v - next.dq).norm(), 0.011 * next.dq.norm()) << "and a little back to it";
+  EXPECT_LT((step_.ddq - next.ddq).norm(), 1e-9);
+}
+
+// A square looks the same after a quarter turn: law and horizon must mean the same goal.
+TEST_F(HorizonTest, LawTakesTheHorizonsTurn) {
+  EXPECT_FALSE(Tick());
+  trajectory::Plan plan = PlanToGoal();
+  plan.turn = 3;
+  Answer(plan);
+  EXPECT_TRUE(Tick());
+  EXPECT_EQ(way_.turn, 3);
+}
+
+TEST_F(HorizonTest, PlannerThatDiesLeavesTheLaw) {
+  BeginHorizon();
+  const int follows = Ticks(1000);
+  EXPECT_NEAR(follows, 300, 2) << "300 ms from its begin, and then the law";
+  EXPECT_EQ(way_.horizon_ns, -1);
+  EXPECT_EQ(events_, std::vector{PlanEvent::kLate}) << "said once";
+  EXPECT_TRUE(way_.planner_late);
+  EXPECT_LT(way_.note.plans_asked, 10) << "it asks on, but less often";
+  EXPECT_GT(way_.note.plans_asked, 4);
+  Answer(PlanToGoal());
+  EXPECT_TRUE(Tick()) << "it is back";
+  EXPECT_FALSE(way_.planner_late);
+}
+
+TEST_F(HorizonTest, AnswerForATargetThatJumpedIsRefused) {
+  EXPECT_FALSE(Tick());
+  trajectory::Plan plan = PlanToGoal();
+  plan.p_BO[1] += 0.2;
+  Answer(plan);
+  EXPECT_FALSE(Tick());
+  EXPECT_EQ(events_, std::vector{PlanEvent::kStale});
+  EXPECT_EQ(Ticks(30), 0) << "once refused, it stays so";
+  EXPECT_EQ(events_.size(), 1U);
+}
+
+TEST_F(HorizonTest, AnswerForAnotherPlaceOfTheArmIsRefused) {
+  EXPECT_FALSE(Tick());
+  const trajectory::Plan plan = PlanToGoal();
+  reference_.q[3] += 0.1;
+  Answer(plan);
+  EXPECT_FALSE(Tick());
+  EXPECT_EQ(events_, std::vector{PlanEvent::kStale});
+}
+
+TEST_F(HorizonTest, AnswerWithoutAMotionLeavesTheLaw) {
+  BeginHorizon();
+  Ticks(45);
+  trajectory::Plan none;
+  none.outcome = trajectory::PlanOutcome::kTargetNotInSight;
+  none.num_joints = 7;
+  none.stamp_ns = way_.asked_ns;
+  Answer(none);
+  EXPECT_FALSE(Tick());
+  EXPECT_EQ(way_.note.outcome, static_cast<std::int32_t>(trajectory::PlanOutcome::kTargetNotInSight));
+}
+
+// Only one horizon is stored: while the next one comes in parts, the motion goes on as it is, for 5 ms.
+TEST_F(HorizonTest, MotionGoesOnWhileTheNextHorizonComes) {
+  BeginHorizon();
+  Ticks(45);
+  reference_.dq[2] = 0.3;
+  reference_.ddq[2] = 2.0;
+  Answer(PlanToGoal(), 1);
+  ASSERT_TRUE(Tick());
+  EXPECT_NEAR(step_.task.v[2], 0.302, 1e-12);
+  EXPECT_EQ(step_.ddq[2], 2.0);
+  EXPECT_EQ(Ticks(20), 4) << "the rest was lost";
+  EXPECT_EQ(way_.horizon_ns, -1);
+}
+
+TEST_F(HorizonTest, LawGoesAloneWhileSeveralPosesFit) {
+  told_apart_ = false;
+  EXPECT_EQ(Ticks(500), 0);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+}
+
+TEST_F(HorizonTest, MovingTargetIsLeftToTheLaw) {
+  v_BO_ = {0.0, 0.1, 0.0};
+  EXPECT_EQ(Ticks(500), 0);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+  v_BO_ = {0.0, 0.04, 0.0};
+  BeginHorizon();
+}
+
+TEST_F(HorizonTest, OnlyAPredictiveLawAsks) {
+  config_.law.law = config::Law::kMean;
+  EXPECT_EQ(Ticks(500), 0);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+  config_.law.law = config::Law::kPredictive;
+  way_.note.way = hal::Way::kPlan;
+  EXPECT_EQ(Ticks(500), 0);
+  EXPECT_EQ(way_.note.plans_asked, 0) << "a plan is under way";
+}
+
+TEST_F(HorizonTest, TargetOutOfSightEndsTheHorizon) {
+  BeginHorizon();
+  is_seen_ = false;
+  EXPECT_NEAR(Ticks(1000), 300, 2);
+  EXPECT_EQ(way_.note.plans_asked, 1);
+}
+
+}  // namespace
+}  // namespace fovea::control
