@@ -249,6 +249,23 @@ TEST_F(HorizonTest, StandingOffsetOfTheJointsIsAllowedFor) {
   EXPECT_LT(loop.ErrorAt(measured), 1e-3);
 }
 
+// An arm that is behind its reference while it moves: at rest it is there.
+TEST_F(HorizonTest, LagOfTheArmEndsWithItsMotion) {
+  const auto end_of = [this](double lag_s) {
+    PlanRequest request = NearReady(config_, 1, 0.1);
+    request.start.dq = model::VecN::Constant(7, 0.2);
+    request.q_off = -lag_s * request.start.dq;
+    Loop loop(config_);
+    EXPECT_TRUE(loop.Step(request));
+    trajectory::Reference end;
+    loop.plan().At(loop.plan().Duration(), end);
+    return end.q;
+  };
+  const double moved = (end_of(0.05) - end_of(0.0)).lpNorm<Eigen::Infinity>();
+  std::cout << "a lag that leaves the joints 10 mrad behind moves the end by " << moved << " rad\n";
+  EXPECT_LT(moved, 0.004);
+}
+
 TEST_F(HorizonTest, SameRequestHasTheSameAnswer) {
   const PlanRequest request = NearReady(config_, 4, 0.3);
   const PlanRequest other = NearReady(config_, 5, 0.3);
