@@ -34,6 +34,7 @@ constexpr double kOfEnd = 5.0;             // weight of the last knot
 constexpr double kPenaltyOfMotion = 30.0;  // of the joints' limits, beside 1 of barriers
 constexpr double kRoomInPicture = 0.01;    // before the picture's edges, normalised
 constexpr double kSolidRoom = 0.003;       // before all that the arm can collide with [m]
+constexpr double kReturn = 0.1;            // of a barrier that is past its margin, per second
 constexpr double kNearSolid = 0.15;        // a barrier farther away has no row [m]
 constexpr int kWorkOfKnot = 4;             // postures that a linearised knot counts for
 constexpr int kWorkOfProgram = 200;        // a quadratic program
@@ -254,7 +255,8 @@ void HorizonSearch::AddBarrier(int knot, const barriers::Barrier& barrier, doubl
       row->Add(a * num_joints_ + j, share[static_cast<std::size_t>(a)] * barrier.gradient[j]);
     }
   }
-  row->low = std::min(barrier.margin + room - barrier.value, 0.0);  // past it: not further
+  // Past a margin it comes back slowly: at once it often cannot.
+  row->low = std::min(barrier.margin + room - barrier.value, kReturn * knot * kKnotPeriod);
   row->most = HUGE_VAL;
 }
 
