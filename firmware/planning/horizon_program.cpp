@@ -41,6 +41,9 @@ bool HorizonProgram::SolveWithoutRows() noexcept {
   K_ = H_;
   K_.diagonal().array() += kProximity;
   factor_.compute(K_);
+  if (factor_.info() != Eigen::Success) {
+    return false;
+  }
   x_ = -g_;
   factor_.solveInPlace(x_);
   return std::all_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(num_rows_),
@@ -66,6 +69,9 @@ const Eigen::VectorXd& HorizonProgram::Solve() noexcept {
   }
   factor_.compute(K_);
   x_.setZero();
+  if (factor_.info() != Eigen::Success) {
+    return x_;
+  }
   y_.setZero();
   for (std::size_t r = 0; r < num_rows_; ++r) {
     z_[static_cast<Eigen::Index>(r)] = std::clamp(0.0, rows_[r].low, rows_[r].most);

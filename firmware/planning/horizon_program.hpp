@@ -52,7 +52,7 @@ class HorizonProgram {
   // A new row, empty; null if there is no room.
   [[nodiscard]] Row* NewRow() noexcept;
 
-  // The solution, or the best compromise after all iterations.
+  // The solution, or the best compromise after all iterations; 0 if H is not positive definite.
   [[nodiscard]] const Eigen::VectorXd& Solve() noexcept;
 
  private:

@@ -30,10 +30,8 @@ constexpr double kLagMost = 0.1;            // of the arm behind its reference [
 constexpr double kOfFree = 0.01;           // of the velocities that the feature leaves free [s^2]
 constexpr double kFreeBelow = 1e-6;        // squared singular values of de/dq that leave a direction free
 constexpr double kOfAcceleration = 1e-5;   // [s^4]
-constexpr double kOfEnd = 5.0;             // weight of the last knot
+constexpr double kLeastGain = 0.01;        // [1/s]
 constexpr double kPenaltyOfMotion = 30.0;  // of the joints' limits, beside 1 of barriers
-constexpr double kRoomInPicture = 0.01;    // before the picture's edges, normalised
-constexpr double kSolidRoom = 0.003;       // before all that the arm can collide with [m]
 constexpr double kReturn = 0.1;            // of a barrier that is past its margin, per second
 constexpr double kNearSolid = 0.15;        // a barrier farther away has no row [m]
 constexpr int kWorkOfKnot = 4;             // postures that a linearised knot counts for
@@ -85,7 +83,8 @@ std::array<HorizonSearch::Form, 2> HorizonSearch::FormsAt(const Eigen::VectorXd&
                                                           const Knot& seen) const noexcept {
   const double half = 0.5 / kKnotPeriod;
   const double of_rate = 1.0 / (gain_ * gain_);
-  const double of_place = knot == kKnots - 1 ? kOfEnd : 1.0;
+  // The last knot stands for all that follow: the sum over an error that goes on decaying.
+  const double of_place = knot == kKnots - 1 ? std::max(1.0 / (gain_ * kKnotPeriod), 1.0) : 1.0;
   std::array<Form, 2> forms;
   Form& place = forms[0];
   place.share = PlaceShares();
@@ -149,9 +148,8 @@ void HorizonSearch::Begin(const trajectory::PlanRequest& request) noexcept {
     c_.segment(i * num_joints_, num_joints_) = first_[2];
   }
   Knot seen;
-  if (See(Sum(c_, 0, PlaceShares()), 0, seen)) {
-    gain_ = control::GainAt(config_.law, seen.size * seen.e.norm());
-  }
+  const double off = See(Sum(c_, 0, PlaceShares()), 0, seen) ? seen.size * seen.e.norm() : HUGE_VAL;
+  gain_ = std::max(control::GainAt(config_.law, off), kLeastGain);
 }
 
 double HorizonSearch::Cost(const Eigen::VectorXd& c, Work& work) noexcept {
@@ -192,7 +190,7 @@ void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
                                      T * T * T * limits_[k].j_max};
     for (std::size_t d = 0; d < kDifferences.size(); ++d) {
       const Difference& difference = kDifferences[d];
-      for (int i = kFixed - difference.size + 1; i + difference.size <= kControlPoints - 1; ++i) {
+      for (int i = kFixed - difference.size + 1; i + difference.size <= kControlPoints; ++i) {
         double value = 0.0;
         std::array<double, kFree> share{};
         for (int p = 0; p < difference.size; ++p) {
@@ -202,9 +200,11 @@ void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
             share[static_cast<std::size_t>(FreeOf(i + p))] += s;
           }
         }
-        Row* const row = program_.NewRow();
+        Row* const row = std::any_of(share.begin(), share.end(), [](double s) { return s != 0.0; })
+                             ? program_.NewRow()
+                             : nullptr;  // of two equal points
         if (row == nullptr) {
-          return;
+          continue;
         }
         for (int a = 0; a < kFree; ++a) {
           const double s = share[static_cast<std::size_t>(a)];
@@ -239,7 +239,7 @@ void HorizonSearch::AddMotion(const Eigen::VectorXd& c) noexcept {
   }
 }
 
-void HorizonSearch::AddBarrier(int knot, const barriers::Barrier& barrier, double room) noexcept {
+void HorizonSearch::AddBarrier(int knot, const barriers::Barrier& barrier) noexcept {
   HorizonProgram::Row* const row = barrier.value < HUGE_VAL ? program_.NewRow() : nullptr;
   if (row == nullptr) {
     return;
@@ -256,7 +256,7 @@ void HorizonSearch::AddBarrier(int knot, const barriers::Barrier& barrier, doubl
     }
   }
   // Past a margin it comes back slowly: at once it often cannot.
-  row->low = std::min(barrier.margin + room - barrier.value, kReturn * knot * kKnotPeriod);
+  row->low = std::min(barrier.margin - barrier.value, kReturn * knot * kKnotPeriod);
   row->most = HUGE_VAL;
 }
 
@@ -293,7 +293,7 @@ void HorizonSearch::AddKnot(const Eigen::VectorXd& c, int knot, Work& work) noex
   model::ComputeJacobian(config_.arm, poses, config_.X_EC, J_C);
   for (const barriers::Barrier& side : barriers::FieldOfViewBarriers(
            config_.guard, {outline_, TargetAt(poses.X_BE * config_.X_EC, knot), J_C})) {
-    AddBarrier(knot, side, kRoomInPicture);
+    AddBarrier(knot, side);
   }
   const barriers::ArmBodies bodies = barriers::PlaceBodies(config_.arm, poses);
   model::LinearJacobian J_E_B;
@@ -302,7 +302,7 @@ void HorizonSearch::AddKnot(const Eigen::VectorXd& c, int knot, Work& work) noex
   for (int i = 0; i < solid_.size(); ++i) {
     const barriers::Barrier row = solid_.RowOf(i, {poses, bodies, J_E_B, rest});
     if (row.value - row.margin < kNearSolid) {
-      AddBarrier(knot, row, kSolidRoom);
+      AddBarrier(knot, row);
     }
   }
 }

@@ -78,7 +78,7 @@ class HorizonSearch {
   void Linearise(const Eigen::VectorXd& c, Work& work) noexcept;
   void AddMotion(const Eigen::VectorXd& c) noexcept;
   void AddKnot(const Eigen::VectorXd& c, int knot, Work& work) noexcept;
-  void AddBarrier(int knot, const barriers::Barrier& barrier, double room) noexcept;
+  void AddBarrier(int knot, const barriers::Barrier& barrier) noexcept;
   [[nodiscard]] bool See(const model::VecN& q, int knot, Knot& seen) const noexcept;
   [[nodiscard]] features::TargetInCamera TargetAt(const model::Pose& X_BC, int knot) const noexcept;
   [[nodiscard]] model::VecN Point(const Eigen::VectorXd& c, int i) const noexcept;

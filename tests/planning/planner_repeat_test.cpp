@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <iostream>
 #include <memory>
 #include <vector>
 
@@ -93,6 +94,32 @@ TEST(PlannerRepeat, APlannerUsesNoHeapAfterItsConstructor) {
     found += plan.IsFound() ? 1 : 0;
   }
   EXPECT_GT(found, 0);
+}
+
+TEST(PlannerRepeat, AHorizonUsesNoHeapEither) {
+  ASSERT_TRUE(linux_rt::HeapCounterActive());
+  int found = 0;
+  for (const char* target : {"sphere", "circle", "square", "triangle"}) {
+    const config::ServoConfig config = test::PlannedServo("panda", target);
+    test::PlannedStarts starts(config, 10);
+    Planner planner(config);
+    Plan plan;
+    for (int i = 0; i < kStarts; ++i) {
+      PlanRequest request = starts.Next();
+      request.kind = PlanRequest::Kind::kHorizon;
+      request.start.dq.setConstant(0.2);
+      request.q_off.setConstant(request.start.q.size(), 1e-3);
+      const std::uint64_t before = linux_rt::CountedHeapCalls();
+      linux_rt::EnterCountedRegion();
+      planner.Compute(request, plan);
+      linux_rt::LeaveCountedRegion();
+      EXPECT_EQ(linux_rt::CountedHeapCalls(), before) << "start " << i;
+      EXPECT_TRUE(plan.IsSound());
+      found += plan.IsFound() ? 1 : 0;
+    }
+  }
+  std::cout << found << " of " << 4 * kStarts << " random starts have a horizon\n";
+  EXPECT_GT(found, 2 * kStarts);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stages that decide where the arm moves: the visual law and the reference.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/core/control/goal_size.hpp"
@@ -35,6 +36,12 @@ model::VecN SoundRates(const config::ServoConfig& config, const model::VecN& dq,
     sound[i] = std::fabs(dq[i]) < kShare * dq_max ? std::clamp(ddq[i], -ddq_max, ddq_max) : 0.0;
   }
   return sound;
+}
+
+// The planner knows the gains that the servo began with. With others, the law goes on alone.
+bool HasTunedGain(const TuningState& tuning) noexcept {
+  constexpr std::array<std::size_t, 3> kGains{0, 1, 2};  // servo.lambda, lambda_near, lambda_slope
+  return std::any_of(kGains.begin(), kGains.end(), [&](std::size_t key) { return tuning.ramps[key].asked; });
 }
 
 }  // namespace
@@ -93,7 +100,8 @@ void ServoTask::ChooseTheWay() noexcept {
   if (state_.way.note.way == hal::Way::kPlan) {
     control::FollowPlan(state_.plans.plan(), state_.reference, sight.is_seen, state_.way, state_.plan_step);
   }
-  state_.on_horizon = control::FollowHorizon(config_, sight, state_.plans, state_.way, state_.plan_step);
+  state_.on_horizon = !HasTunedGain(state_.tuning) &&
+                      control::FollowHorizon(config_, sight, state_.plans, state_.way, state_.plan_step);
 }
 
 // Target feature, plus orientation-hold rows if enabled.

@@ -51,9 +51,9 @@ TEST_P(PredictiveScenario, ReachesItsGoalBesidePlans) {
   EXPECT_EQ(Count(PlanEvent::kTaken), 1);
 }
 
-// With a high gain the scenario's law is as quick for a ball, whose error falls in a straight line, and
-// slower for the others.
-TEST_P(PredictiveScenario, IsNotSlowerThanTheLawWithAHighGain) {
+// With a high gain a horizon uses the joints' accelerations better than the scenario's law. Not for a ball,
+// whose error falls in a straight line.
+TEST_P(PredictiveScenario, IsQuickWithAHighGain) {
   const Assignments gain{"servo.plans=false", "servo.lambda=6", "servo.lambda_near=0"};
   Assignments predictive = gain;
   predictive.emplace_back(kPredictive);
@@ -61,7 +61,8 @@ TEST_P(PredictiveScenario, IsNotSlowerThanTheLawWithAHighGain) {
   const sim::Summary ahead = Run(GetParam(), predictive);
   EXPECT_TRUE(ahead.converged) << ahead.verdict;
   ASSERT_TRUE(ahead.settle_time_s.has_value());
-  EXPECT_LT(*ahead.settle_time_s, 1.05 * law.settle_time_s.value_or(1e9));
+  const double most = std::string(GetParam()) == "ball" ? 1.15 : 1.0;
+  EXPECT_LT(*ahead.settle_time_s, most * law.settle_time_s.value_or(1e9));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, PredictiveScenario, testing::Values("ball", "square", "circle"),
@@ -88,6 +89,34 @@ TEST_F(Predictive, PlannerThatComesAndGoesDoesNotThrowTheArm) {
       Run("square", {kPredictive, "servo.plans=false", "faults.planner_loss_s=[0.5, 0.9]"});
   EXPECT_TRUE(summary.converged) << summary.verdict;
   EXPECT_EQ(Count(PlanEvent::kLate), 1);
+}
+
+// A plane leaves no room for the hand at the goal: the horizon stops before it, and the servo has to find
+// out.
+TEST_F(Predictive, GoalThatCannotBeReachedIsNoticed) {
+  for (const char* plans : {"servo.plans=false", "servo.plans=true"}) {
+    const sim::Summary summary =
+        Run("square", {kPredictive, plans, "safety.planes=[0,0,1,0.4]", "run.duration_s=15"});
+    EXPECT_FALSE(summary.converged);
+    EXPECT_EQ(LastMode(summary), "hold") << plans;
+    EXPECT_EQ(LastReason(summary), "goal_unreachable") << plans;
+  }
+}
+
+// The goal is 1 mm from where the hand may be: no margin of the horizon's own keeps the arm away.
+TEST_F(Predictive, GoalBesideALimitIsReached) {
+  const sim::Summary summary =
+      Run("square", {kPredictive, "servo.plans=false", "safety.planes=[0,0,1,0.38]", "run.duration_s=12"});
+  EXPECT_TRUE(summary.converged) << summary.verdict;
+}
+
+TEST_F(Predictive, LowGainIsSlowButSteady) {
+  for (const char* gain : {"servo.lambda=0.001", "servo.lambda=0.3", "servo.lambda=0.6"}) {
+    const sim::Summary law = Run("ball", {"servo.plans=false", gain, "run.duration_s=4"});
+    const sim::Summary ahead = Run("ball", {kPredictive, "servo.plans=false", gain, "run.duration_s=4"});
+    EXPECT_EQ(LastMode(ahead), "track");
+    EXPECT_LT(ahead.final_error_mm.value_or(1e9), 1.2 * law.final_error_mm.value_or(0.0)) << gain;
+  }
 }
 
 TEST_F(Predictive, TargetThatJumpsIsReached) {

@@ -73,18 +73,22 @@ TEST_F(HorizonTest, AsksEvery40MsAndFollowsTheNewest) {
   EXPECT_TRUE(events_.empty()) << "horizons come and go without a word";
 }
 
+// The reference of the request's tick is the horizon's begin, after that tick.
 TEST_F(HorizonTest, StepIsTheHorizonsMotion) {
   BeginHorizon();
-  Ticks(100);
-  trajectory::Reference at;
-  plans_.plan().At(static_cast<double>(now_ns_ - way_.horizon_ns) * 1e-9, at);
-  reference_ = at;
+  Ticks(30);
+  const trajectory::Plan plan = plans_.plan();
+  const auto at = [&](std::int64_t ticks) {
+    trajectory::Reference reference;
+    plan.At(1e-3 * static_cast<double>(ticks), reference);
+    return reference;
+  };
+  const std::int64_t ticks = (now_ns_ - way_.horizon_ns) / hal::kTickPeriodNs;
+  reference_ = at(ticks);  // before the next tick moves it
   ASSERT_TRUE(Tick());
-  trajectory::Reference next;
-  plans_.plan().At(static_cast<double>(now_ns_ - way_.horizon_ns) * 1e-9 + hal::kTickPeriodS, next);
-  EXPECT_GT(next.dq.norm(), 0.01);
-  EXPECT_LT((step_.task.v - next.dq).norm(), 0.011 * next.dq.norm()) << "and a little back to it";
-  EXPECT_LT((step_.ddq - next.ddq).norm(), 1e-9);
+  EXPECT_GT(at(ticks + 1).dq.norm(), 1e-3);
+  EXPECT_LT((step_.task.v - at(ticks + 1).dq).norm(), 1e-9);
+  EXPECT_LT((step_.ddq - at(ticks + 1).ddq).norm(), 1e-9);
 }
 
 // A square looks the same after a quarter turn: law and horizon must mean the same goal.
@@ -97,18 +101,70 @@ TEST_F(HorizonTest, LawTakesTheHorizonsTurn) {
   EXPECT_EQ(way_.turn, 3);
 }
 
+// A plan has led to this one of the equal goals, because the others are not reachable.
+TEST_F(HorizonTest, HorizonToAnotherTurnThanThePlansIsNotFollowed) {
+  way_.keeps_posture = true;
+  way_.turn = 1;
+  EXPECT_FALSE(Tick());
+  trajectory::Plan plan = PlanToGoal();
+  plan.turn = 3;
+  Answer(plan);
+  EXPECT_FALSE(Tick());
+  EXPECT_EQ(way_.turn, 1);
+}
+
+// At its goal, or before a limit: the law pushes on, and limits that stop it are noticed.
+TEST_F(HorizonTest, HorizonThatHardlyMovesIsLeftToTheLaw) {
+  EXPECT_FALSE(Tick());
+  VecN near = reference_.q;
+  near[2] += 0.004;
+  Answer(PlanTo(reference_.q, near));
+  EXPECT_EQ(Ticks(30), 0);
+  EXPECT_TRUE(events_.empty());
+  near[2] += 0.004;
+  Ticks(10);
+  Answer(PlanTo(reference_.q, near));
+  EXPECT_EQ(Ticks(20), 20);
+}
+
+TEST_F(HorizonTest, LawBeginsSmoothlyBeforeAHorizon) {
+  way_.since_ns = now_ns_;
+  config_.law.smooth_start_s = 0.25;
+  Ticks(249);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+  Ticks(2);
+  EXPECT_EQ(way_.note.plans_asked, 1);
+}
+
+TEST_F(HorizonTest, SlowLawLooksFartherThanAHorizon) {
+  config_.law.lambda = 0.4;
+  EXPECT_EQ(Ticks(500), 0);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+}
+
+// ChooseWay has refused it in the same tick.
+TEST_F(HorizonTest, RefusedPlanIsNoHorizon) {
+  EXPECT_FALSE(Tick());
+  Answer(PlanToGoal());
+  WaySight sight = Sight();
+  sight.is_seen = true;
+  sight.has_answer = true;
+  way_.asked_ns = -1;
+  EXPECT_FALSE(FollowHorizon(config_, sight, plans_, way_, step_));
+  EXPECT_EQ(way_.horizon_ns, -1);
+}
+
 TEST_F(HorizonTest, PlannerThatDiesLeavesTheLaw) {
   BeginHorizon();
   const int follows = Ticks(1000);
   EXPECT_NEAR(follows, 300, 2) << "300 ms from its begin, and then the law";
   EXPECT_EQ(way_.horizon_ns, -1);
   EXPECT_EQ(events_, std::vector{PlanEvent::kLate}) << "said once";
-  EXPECT_TRUE(way_.planner_late);
+  EXPECT_FALSE(way_.planner_late) << "the next whole plan is waited for as long as ever";
   EXPECT_LT(way_.note.plans_asked, 10) << "it asks on, but less often";
   EXPECT_GT(way_.note.plans_asked, 4);
   Answer(PlanToGoal());
   EXPECT_TRUE(Tick()) << "it is back";
-  EXPECT_FALSE(way_.planner_late);
 }
 
 TEST_F(HorizonTest, AnswerForATargetThatJumpedIsRefused) {
@@ -153,8 +209,11 @@ TEST_F(HorizonTest, MotionGoesOnWhileTheNextHorizonComes) {
   ASSERT_TRUE(Tick());
   EXPECT_NEAR(step_.task.v[2], 0.302, 1e-12);
   EXPECT_EQ(step_.ddq[2], 2.0);
+  const int asked = way_.note.plans_asked;
   EXPECT_EQ(Ticks(20), 4) << "the rest was lost";
   EXPECT_EQ(way_.horizon_ns, -1);
+  EXPECT_EQ(way_.note.plans_asked, asked + 1) << "it is asked for anew at once";
+  EXPECT_TRUE(events_.empty());
 }
 
 TEST_F(HorizonTest, LawGoesAloneWhileSeveralPosesFit) {

@@ -168,5 +168,25 @@ TEST_F(TunedLoopTest, RandomRequestsBreakNoLimit) {
   EXPECT_GT(refused, test::Repetitions(20) * 10);
 }
 
+// The planner beside the tick knows the gains of the begin: with another one, a predictive law goes on by its
+// own matrix.
+TEST_F(TunedLoopTest, PredictiveLawAsksForNoHorizonWithAnotherGain) {
+  config::ServoConfig config = test::PandaConfig();
+  config.law.law = config::Law::kPredictive;
+  Start(config);
+  target_ = X_BC() * model::Vec3(0.03, -0.02, 0.43);
+  TrackFor(600);
+  const int asked = outputs_.record.way.plans_asked;
+  EXPECT_GT(asked, 0);
+  Run(500);
+  EXPECT_GT(outputs_.record.way.plans_asked, asked);
+  Tick([](ServoInputs& inputs) { inputs.tuning = {0, 4.0}; });
+  EXPECT_EQ(outputs_.record.tuning.result, hal::TuningResult::kTaken);
+  const int last = outputs_.record.way.plans_asked;
+  Run(1000);
+  EXPECT_EQ(outputs_.record.way.plans_asked, last);
+  EXPECT_EQ(outputs_.record.mode, hal::Mode::kTrack);
+}
+
 }  // namespace
 }  // namespace fovea::task
