@@ -10,6 +10,23 @@ constexpr int kIterations = 80;
 constexpr double kProximity = 1e-9;  // of an iteration's step
 constexpr double kRelaxation = 1.6;
 
+// x = (L L^T)^-1 x. (Eigen's own takes memory for large systems.)
+void SolveBy(const Eigen::MatrixXd& L, Eigen::VectorXd& x) noexcept {
+  const Eigen::Index n = x.size();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    x[j] /= L(j, j);
+    for (Eigen::Index i = j + 1; i < n; ++i) {
+      x[i] -= L(i, j) * x[j];
+    }
+  }
+  for (Eigen::Index j = n - 1; j >= 0; --j) {
+    for (Eigen::Index i = j + 1; i < n; ++i) {
+      x[j] -= L(i, j) * x[i];
+    }
+    x[j] /= L(j, j);
+  }
+}
+
 }  // namespace
 
 HorizonProgram::HorizonProgram(int size, int most_rows)
@@ -45,7 +62,7 @@ bool HorizonProgram::SolveWithoutRows() noexcept {
     return false;
   }
   x_ = -g_;
-  factor_.solveInPlace(x_);
+  SolveBy(factor_.matrixLLT(), x_);
   return std::all_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(num_rows_),
                      [this](const Row& row) {
                        const double value = row.Times(x_);
@@ -86,7 +103,7 @@ const Eigen::VectorXd& HorizonProgram::Solve() noexcept {
         right_[row.place[i]] += row.a[i] * pull;
       }
     }
-    factor_.solveInPlace(right_);
+    SolveBy(factor_.matrixLLT(), right_);
     x_ += kRelaxation * (right_ - x_);
     for (std::size_t r = 0; r < num_rows_; ++r) {
       const Row& row = rows_[r];

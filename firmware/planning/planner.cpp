@@ -140,11 +140,13 @@ bool Planner::Parts::Time(Work& work, Plan& plan) noexcept {
     const double lag = LagOf(limits, plan.num_joints, plan.period_s);
     bool passes = true;
     std::size_t cell = 0;
-    for (double t = 0.0; t < plan.Duration(); t += kGuardStep) {
+    double t = 0.0;
+    while (t < plan.Duration()) {
       if (!IsLetPass(space, plan, t, work)) {
         passes = false;
         speed.SlowDown(speed.UAt(t - lag, cell), kSlower);
       }
+      t += kGuardStep;
     }
     if (passes) {
       return FirstBlocked(space, plan, work) < 0.0;
