@@ -25,7 +25,7 @@ whatever the law. The four canonical tasks are those of Gans, Hutchinson and Cor
 systems, IJRR 2003). The exit code is 1 if a run exceeded a limit or touched anything.
 
 A cell has the time until the picture's error stays below 2 % of the first; the camera's largest distance from the straight
-line between the ends of its way; and the largest error in the picture. **no**: the goal was not reached within 8 s.
+line between the ends of its way; and the largest error in the picture. **no**: the goal was not reached within 15 s.
 
 )";
 
