@@ -68,7 +68,7 @@ TEST(HorizonProgram, BoxesAgreeWithProjectedGradients) {
   }
   std::cout << active << " bounds act, largest difference " << worst << "\n";
   EXPECT_GT(active, 100);
-  EXPECT_LT(worst, 2e-3);
+  EXPECT_LT(worst, 1e-5);
 }
 
 // Of rows that contradict each other, the one with the larger penalty is kept better, and nothing overflows.

@@ -139,14 +139,16 @@ TEST_P(Horizons, ErrorDecaysWithTheLawsGain) {
     }
     const double rate = std::log(begin / loop.ErrorAt(request)) / (15 * kStepS);
     std::cout << "gain " << gain << " 1/s: the error decays with " << rate << " 1/s\n";
-    EXPECT_NEAR(rate, gain, 0.1 * gain);
+    EXPECT_NEAR(rate, gain, 0.03 * gain);
   }
 }
 
 TEST_P(Horizons, BeginsAsTheArmMovesAndKeepsItsLimits) {
   Loop loop(config_);
   double last = 0.0;
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  constexpr int kRuns = 6;
+  int runs = 0;
+  for (unsigned seed = 1; seed <= 60 && runs < kRuns; ++seed) {
     PlanRequest request = NearReady(config_, seed, 0.3);
     if (loop.RoomAt(request) < 0.02) {
       continue;
@@ -154,12 +156,14 @@ TEST_P(Horizons, BeginsAsTheArmMovesAndKeepsItsLimits) {
     for (int k = 0; k < 75 && loop.Step(request); ++k) {
     }
     last = std::max(last, loop.ErrorAt(request));
+    ++runs;
   }
   std::cout << "largest velocity or acceleration, of what a plan may use: " << loop.most() << ", jump "
             << loop.jump() << ", last error " << last << "\n";
+  EXPECT_EQ(runs, kRuns) << "starts with the target in the picture";
   EXPECT_LT(loop.most(), 1.05);
   EXPECT_LT(loop.jump(), 1e-9);
-  EXPECT_LT(last, 0.05);
+  EXPECT_LT(last, 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Horizons,
@@ -214,7 +218,7 @@ TEST_F(HorizonTest, MovingTargetIsFollowedWithoutLag) {
   const model::Pose X_CO = (poses.X_BE * config_.X_EC).Inverse() * request.X_BO;
   const double lag = (X_CO.p - config_.feature.p_CO_C_star).norm();
   std::cout << "lag behind 0.05 m/s: " << lag << " m\n";
-  EXPECT_LT(lag, 0.0025);
+  EXPECT_LT(lag, 0.001);
 }
 
 // A square that is turned by 100 degrees looks as if turned by 10.
@@ -260,7 +264,7 @@ TEST_F(HorizonTest, LagOfTheArmEndsWithItsMotion) {
   const double without = error_at_the_end(0.0);
   const double with = error_at_the_end(0.05);
   std::cout << "error at the end " << without << ", of an arm 10 mrad behind " << with << "\n";
-  EXPECT_LT(with, without + 0.005);
+  EXPECT_LT(with, without + 0.001);
 }
 
 TEST_F(HorizonTest, SameRequestHasTheSameAnswer) {
