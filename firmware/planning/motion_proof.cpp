@@ -55,7 +55,8 @@ double FirstBlocked(const PostureSpace& space, const trajectory::Plan& plan, Wor
   return -1.0;
 }
 
-bool IsLetPass(const PostureSpace& space, const trajectory::Plan& plan, double t, Work& work) noexcept {
+bool IsLetPass(const PostureSpace& space, const trajectory::Plan& plan, double t,
+               guard::KnownClearances& known, Work& work) noexcept {
   trajectory::Reference reference;
   trajectory::Reference next;
   plan.At(t, reference);
@@ -71,7 +72,7 @@ bool IsLetPass(const PostureSpace& space, const trajectory::Plan& plan, double t
   guard::MotionWish wish;
   wish.dq = next.dq;
   wish.ddq = next.ddq;
-  return guard::GuardMotion(config, wish, poses.X_BE.p, J_E_B, poses, reference) == 0;
+  return guard::GuardMotion(config, wish, poses.X_BE.p, J_E_B, known, reference) == 0;
 }
 
 }  // namespace fovea::planning

@@ -10,6 +10,7 @@
 // every kGuardStep. The guard has the last word in the tick, too: there it checks every tick.
 #pragma once
 
+#include "firmware/core/guard/known_clearances.hpp"
 #include "firmware/planning/posture_space.hpp"
 
 namespace fovea::planning {
@@ -21,8 +22,8 @@ inline constexpr double kGuardStep = 0.01;   // [s]
 [[nodiscard]] double FirstBlocked(const PostureSpace& space, const trajectory::Plan& plan,
                                   Work& work) noexcept;
 
-// Whether no limit of the guard acts on the plan's motion at `t`.
+// Whether no limit of the guard acts on the plan's motion at `t`. `known`: as for guard::LimitsPassed.
 [[nodiscard]] bool IsLetPass(const PostureSpace& space, const trajectory::Plan& plan, double t,
-                             Work& work) noexcept;
+                             guard::KnownClearances& known, Work& work) noexcept;
 
 }  // namespace fovea::planning

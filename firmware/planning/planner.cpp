@@ -138,11 +138,12 @@ bool Planner::Parts::Time(Work& work, Plan& plan) noexcept {
     }
     TimePath(smooth, speed, duration, limits, plan);
     const double lag = LagOf(limits, plan.num_joints, plan.period_s);
+    guard::KnownClearances known;
     bool passes = true;
     std::size_t cell = 0;
     double t = 0.0;
     while (t < plan.Duration()) {
-      if (!IsLetPass(space, plan, t, work)) {
+      if (!IsLetPass(space, plan, t, known, work)) {
         passes = false;
         speed.SlowDown(speed.UAt(t - lag, cell), kSlower);
       }

@@ -153,7 +153,8 @@ class PlanWatch {
     model::ComputePoses(config_.arm, guarded.q, poses);
     model::LinearJacobian J_E_B;
     model::ComputeLinearJacobian(config_.arm, poses, poses.X_BE.p, J_E_B);
-    return guard::GuardMotion(config_, wish, poses.X_BE.p, J_E_B, poses, guarded) != 0;
+    guard::KnownClearances known;
+    return guard::GuardMotion(config_, wish, poses.X_BE.p, J_E_B, known, guarded) != 0;
   }
 
   [[nodiscard]] double FeatureError(const model::VecN& q, int turn) const {

@@ -46,17 +46,20 @@ LimitSet LimitVelocity(const config::ServoConfig& config, model::VecN& dq) noexc
 }
 
 // The hand's linear and angular speed, the same way.
-LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E_B,
-                    const model::ArmPoses& poses, model::VecN& dq) noexcept {
+LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E_B, model::LazyPoses& now,
+                    model::VecN& dq) noexcept {
   LimitSet limits = 0;
   const double speed = J_E_B.lazyProduct(dq).norm();
   if (const double most = kSpeedShare * config::SpeedLimitOfReference(config.guard); speed > most) {
     dq *= most / speed;
     limits |= Bit(Limit::kCartesianSpeed);
   }
-  const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
-  if (const double most = kTurnShare * config::TurnLimitOfReference(config.guard); turn > most) {
-    dq *= most / turn;
+  const double most_turn = kTurnShare * config::TurnLimitOfReference(config.guard);
+  if (dq.lpNorm<1>() <= most_turn) {
+    return limits;  // the hand turns no faster than all joints together
+  }
+  if (const double turn = model::AngularVelocity(config.arm, now.Get(), dq).norm(); turn > most_turn) {
+    dq *= most_turn / turn;
     limits |= Bit(Limit::kRotationSpeed);
   }
   return limits;
@@ -147,8 +150,9 @@ MotionWish StopTogether(const config::ServoConfig& config, const trajectory::Ref
 }
 
 LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
-                     const LinearJacobian& J_E_B, const model::ArmPoses& reference_poses,
+                     const LinearJacobian& J_E_B, KnownClearances& known,
                      trajectory::Reference& reference) noexcept {
+  model::LazyPoses now(config.arm, reference.q);
   model::VecN dq = wish.dq;
   LimitSet limits = LimitVelocity(config, dq);
   limits |= LimitJointPosition(config, reference.q, dq);
@@ -157,7 +161,7 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
     limits |= workspace | LimitJointPosition(config, reference.q, dq);
   }
   limits |= LimitVelocity(config, dq);
-  limits |= LimitSpeed(config, J_E_B, reference_poses, dq);
+  limits |= LimitSpeed(config, J_E_B, now, dq);
   const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
   if (wish.stops && limits != 0) {
     dq.setZero();
@@ -178,7 +182,7 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
     next = reference;
     acceleration_limits = together ? ApproachTogether(config, dq, ddq, next)
                                    : ApproachAlone(config, share * dq, share * ddq, next);
-    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, reference_poses) : 0;
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, now, known) : 0;
     if (passed == 0) {
       break;
     }

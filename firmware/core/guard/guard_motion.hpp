@@ -11,7 +11,7 @@
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
-#include "firmware/core/model/kinematics.hpp"
+#include "firmware/core/guard/known_clearances.hpp"
 #include "firmware/core/trajectory/reference.hpp"
 #include "fovea/hal/events.hpp"
 
@@ -40,10 +40,10 @@ struct MotionWish {
                                       const trajectory::Reference& reference) noexcept;
 
 // Advances `reference` by one tick towards `wish`. `p_BE` [m]: the end effector's position. `J_E_B` [3 x
-// num_joints]: its linear Jacobian in axes of B. `reference_poses`: the links at `reference`. Returns the
-// limits that acted. Real-time: yes.
+// num_joints]: its linear Jacobian in axes of B. `known`: as for LimitsPassed. Returns the limits that acted.
+// Real-time: yes.
 hal::LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
-                          const model::LinearJacobian& J_E_B, const model::ArmPoses& reference_poses,
+                          const model::LinearJacobian& J_E_B, KnownClearances& known,
                           trajectory::Reference& reference) noexcept;
 
 }  // namespace fovea::guard

@@ -66,32 +66,24 @@ class StopWay {
   // The joints' positions at the end of the stop.
   void End(model::VecN& q) const noexcept {
     for (int i = 0; i < q.size(); ++i) {
-      q[i] = Start(i) + paths_[static_cast<std::size_t>(i)].At(Duration()).x;
+      q[i] = Start(i) + paths_[static_cast<std::size_t>(i)].End().x;
     }
   }
 
   [[nodiscard]] const barriers::PerJoint& Levers() const noexcept { return levers_; }
 
-  // An upper bound of every point's distance between its places at the postures `a` and `b`.
-  [[nodiscard]] double Between(const model::VecN& a, const model::VecN& b) const noexcept {
+  // An upper bound of every point's distance between its place at the posture `q` and its places during the
+  // stop, which ends at `q_end`. A joint that does not reverse is furthest away where the stop begins or
+  // ends.
+  [[nodiscard]] double FurthestFrom(const model::VecN& q, const model::VecN& q_end) const noexcept {
     double distance = kRounding;
-    for (int i = 0; i < a.size(); ++i) {
-      distance += levers_[static_cast<std::size_t>(i)] * std::fabs(a[i] - b[i]);
-    }
-    return distance;
-  }
-
-  // The same between `q_now` and all postures of the stop, which ends at `q_end`. A joint that does not
-  // reverse is furthest away where the stop begins or ends.
-  [[nodiscard]] double FurthestFrom(const model::VecN& q_now, const model::VecN& q_end) const noexcept {
-    double distance = kRounding;
-    for (int i = 0; i < q_now.size(); ++i) {
+    for (int i = 0; i < q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double v = reference_.dq[i];
       const double settled = trajectory::SettledVelocity(v, reference_.ddq[i], JerkOf(k));
-      const double begins = std::fabs(Start(i) - q_now[i]);
+      const double begins = std::fabs(Start(i) - q[i]);
       const double far = v * settled >= 0.0
-                             ? std::max(begins, std::fabs(q_end[i] - q_now[i]))
+                             ? std::max(begins, std::fabs(q_end[i] - q[i]))
                              : begins + durations_s_[k] * std::max(std::fabs(v), std::fabs(settled));
       distance += levers_[k] * far;
     }
@@ -172,62 +164,51 @@ class HandSpeeds {
 
 // The arm's barriers, each with its margin. Past a barrier the arm may only come back.
 //
-// No barrier's value falls by more than the joints' motion between two postures moves any point (levers.hpp).
-// That holds for a pair of links too: seen from the one nearer to the base, only the joints between them move
-// the other. So a barrier is looked at again only when the arm has moved by the clearance that it last had.
+// They are looked at only where no known posture is near enough (known_clearances.hpp). That holds for a pair
+// of links too: seen from the one nearer to the base, only the joints between them move the other.
 class Bounds {
  public:
-  Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept : solid_(config) {
-    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, now);
-    for (int i = 0; i < solid_.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double value = solid_.ValueOf(i, now, bodies);
-      least_[k] = std::min(solid_.StopMarginOf(i), value) - kSlack;
-      clear_[k] = value - least_[k];
-      clear_of_all_ = std::min(clear_of_all_, clear_[k]);
-    }
-  }
+  // `now` and `known` must outlive the object.
+  Bounds(const config::ServoConfig& config, model::LazyPoses& now, KnownClearances& known) noexcept
+      : arm_(config.arm), solid_(config), now_(now), known_(known) {}
 
-  // True if no bound can be exceeded where every point is at most `moved` away from where the bounds were
-  // last looked at.
-  [[nodiscard]] bool AreClear(double moved) const noexcept { return moved <= clear_of_all_; }
-
-  // Looks at those bounds that can be exceeded with the links at `poses`. The limits of the first exceeded
+  // Looks at all of them with the joints at `q` and the links at `poses`. The limits of the first exceeded
   // one; 0 if there is none.
-  [[nodiscard]] hal::LimitSet Look(const model::ArmModel& arm, const model::ArmPoses& poses,
-                                   double moved) noexcept {
-    const barriers::ArmBodies bodies = barriers::PlaceBodies(arm, poses);
-    clear_of_all_ = HUGE_VAL;
+  [[nodiscard]] hal::LimitSet Look(const model::VecN& q, const model::ArmPoses& poses) noexcept {
+    const barriers::ArmBodies bodies = barriers::PlaceBodies(arm_, poses);
+    double clearance = HUGE_VAL;
     for (int i = 0; i < solid_.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      clear_[k] -= moved;
-      if (!(clear_[k] >= 0.0)) {
-        clear_[k] = solid_.ValueOf(i, poses, bodies) - least_[k];
-        if (!(clear_[k] >= 0.0)) {
-          return hal::Bit(solid_.NameOf(i));
-        }
+      const double value = solid_.ValueOf(i, poses, bodies);
+      const double room = value - solid_.StopMarginOf(i);
+      if (!(room >= -kSlack) && !(value >= ValueNow(i) - kSlack)) {
+        return hal::Bit(solid_.NameOf(i));
       }
-      clear_of_all_ = std::min(clear_of_all_, clear_[k]);
+      clearance = std::min(clearance, room);
     }
+    known_.Add(q, clearance);
     return 0;
   }
 
  private:
-  static constexpr int kMost = barriers::SolidBarriers::kMost;
+  [[nodiscard]] double ValueNow(int i) noexcept {
+    const model::ArmPoses& poses = now_.Get();
+    return solid_.ValueOf(i, poses, barriers::PlaceBodies(arm_, poses));
+  }
 
+  const model::ArmModel& arm_;
   barriers::SolidBarriers solid_;
-  std::array<double, kMost> least_{};  // smallest allowed value of each
-  std::array<double, kMost> clear_{};  // at least so far above it when they were last looked at
-  double clear_of_all_ = HUGE_VAL;     // the smallest of these
+  model::LazyPoses& now_;
+  KnownClearances& known_;
 };
 
 }  // namespace
 
 hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::Reference& reference,
-                           const model::VecN& q_now, const model::ArmPoses& poses_now) noexcept {
+                           model::LazyPoses& now, KnownClearances& known) noexcept {
   const config::GuardConfig& guard = config.guard;
   const StopWay way(config, reference);
   const double duration = way.Duration();
+  const model::VecN& q_now = now.q();
   model::VecN q_end = reference.q;
 
   // Joints: a joint is furthest out where it stops, unless it reverses before.
@@ -240,16 +221,16 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     }
   }
 
-  // Arm and hand: at times that are denser at the start, because the arm certainly moves along that part. A
-  // bound is looked at only where some point can have reached it, and the hand's speeds while they could
+  // Arm and hand: at times that are denser at the start, because the arm certainly moves along that part. The
+  // bounds are looked at only where no known posture is near enough, and the hand's speeds while they could
   // exceed their limits.
-  Bounds bounds(config, poses_now);
-  const bool are_clear = bounds.AreClear(way.FurthestFrom(q_now, q_end));
+  Bounds bounds(config, now, known);
+  const KnownClearances::Posture& nearby = known.last();
+  const bool are_clear = nearby.clearance > 0.0 && way.FurthestFrom(nearby.q, q_end) <= nearby.clearance;
   const double speed_most = config::kSpeedShareMost * config::SpeedLimitOfReference(guard);
   const double turn_most = config::kTurnShareMost * config::TurnLimitOfReference(guard);
   std::optional<HandSpeeds> hand;
-  model::ArmPoses poses;
-  model::VecN q_looked = q_now;  // where the bounds were last looked at
+  std::optional<model::ArmPoses> poses;
   model::VecN q = reference.q;
   model::VecN dq = reference.dq;
   for (int sample = 0; sample < kStopSamples; ++sample) {
@@ -260,27 +241,25 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
       return 0;  // nor will it be
     }
     if (may_be_fast && !hand) {
-      hand.emplace(config.arm, way.Levers(), q_now, poses_now);
+      hand.emplace(config.arm, way.Levers(), q_now, now.Get());
     }
     const HandSpeeds::Most hand_most = may_be_fast ? hand->At(q, dq) : HandSpeeds::Most{};
     const bool checks_speed = most.speed > speed_most && !(hand_most.speed <= speed_most);
     const bool checks_turn = most.turn > turn_most && !(hand_most.turn <= turn_most);
-    const double moved = are_clear ? 0.0 : way.Between(q, q_looked);
-    const bool checks_bounds = !are_clear && !bounds.AreClear(moved);
+    const bool checks_bounds = !are_clear && !known.Cover(way.Levers(), q);
     if (checks_speed || checks_turn || checks_bounds) {
-      model::ComputePoses(config.arm, q, poses);
+      model::ComputePoses(config.arm, q, poses ? *poses : poses.emplace());
     }
-    if (checks_speed && model::LinearVelocity(config.arm, poses, poses.X_BE.p, dq).norm() > speed_most) {
+    if (checks_speed && model::LinearVelocity(config.arm, *poses, poses->X_BE.p, dq).norm() > speed_most) {
       return hal::Bit(hal::Limit::kCartesianSpeed);
     }
-    if (checks_turn && model::AngularVelocity(config.arm, poses, dq).norm() > turn_most) {
+    if (checks_turn && model::AngularVelocity(config.arm, *poses, dq).norm() > turn_most) {
       return hal::Bit(hal::Limit::kRotationSpeed);
     }
     if (checks_bounds) {
-      if (const hal::LimitSet passed = bounds.Look(config.arm, poses, moved); passed != 0) {
+      if (const hal::LimitSet passed = bounds.Look(q, *poses); passed != 0) {
         return passed;
       }
-      q_looked = q;
     }
   }
   return 0;

@@ -41,17 +41,19 @@ model::ArmPoses PosesOf(const config::ServoConfig& config, const model::VecN& q)
 }
 
 // Slows the reference down on its course as fast as allowed.
-hal::LimitSet Brake(const config::ServoConfig& config, trajectory::Reference& reference) noexcept {
+hal::LimitSet Brake(const config::ServoConfig& config, guard::KnownClearances& known,
+                    trajectory::Reference& reference) noexcept {
   const model::ArmPoses poses = PosesOf(config, reference.q);
   model::LinearJacobian J_E_B;
   model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
-  return guard::GuardMotion(config, guard::StopTogether(config, reference), poses.X_BE.p, J_E_B, poses,
+  return guard::GuardMotion(config, guard::StopTogether(config, reference), poses.X_BE.p, J_E_B, known,
                             reference);
 }
 
 // `next` becomes the reference if nothing forbids it.
 hal::LimitSet TakeReference(const config::ServoConfig& config, const trajectory::Reference& next,
-                            MotionState& state, trajectory::Reference& reference) noexcept {
+                            MotionState& state, guard::KnownClearances& known,
+                            trajectory::Reference& reference) noexcept {
   hal::LimitSet limits = 0;
   for (int i = 0; i < config.arm.num_joints; ++i) {
     const double expected = reference.q[i] + reference.dq[i] * hal::kTickPeriodS;
@@ -59,18 +61,20 @@ hal::LimitSet TakeReference(const config::ServoConfig& config, const trajectory:
     limits |= LimitsOfJoint(config, i, next);
   }
   if (limits == 0 && !state.refused) {
-    limits = guard::LimitsPassed(config, next, reference.q, PosesOf(config, reference.q));
+    model::LazyPoses now(config.arm, reference.q);
+    limits = guard::LimitsPassed(config, next, now, known);
   }
   state.refused = state.refused || limits != 0;
   if (state.refused) {
-    return limits | Brake(config, reference);
+    return limits | Brake(config, known, reference);
   }
   reference = next;
   return 0;
 }
 
 hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionCommand& command,
-                           MotionState& state, trajectory::Reference& reference) noexcept {
+                           MotionState& state, guard::KnownClearances& known,
+                           trajectory::Reference& reference) noexcept {
   const int n = config.arm.num_joints;
   trajectory::Reference next;
   next.q = model::ToVector(command.q, n);
@@ -78,9 +82,9 @@ hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionComman
   next.ddq = model::ToVector(command.ddq, n);
   if (!next.q.allFinite() || !next.dq.allFinite() || !next.ddq.allFinite()) {
     state.refused = true;
-    return Brake(config, reference);
+    return Brake(config, known, reference);
   }
-  return TakeReference(config, next, state, reference);
+  return TakeReference(config, next, state, known, reference);
 }
 
 // The share of the joints' `limits` that a move to `q_goal` may use so that the hand keeps its own limits.
@@ -182,17 +186,20 @@ void NoteAsked(const config::ServoConfig& config, const MotionCommand& asked, Mo
 }
 
 hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
-                           MotionState& state, trajectory::Reference& reference) noexcept {
+                           MotionState& state, guard::KnownClearances& known,
+                           trajectory::Reference& reference) noexcept {
   const MotionCommand command = Resolved(config, asked);
   state.refused = false;
   switch (command.kind) {
     case MotionKind::kNone: break;
-    case MotionKind::kJointSetpoint: state.Stop(); return TakeSetpoint(config, command, state, reference);
+    case MotionKind::kJointSetpoint:
+      state.Stop();
+      return TakeSetpoint(config, command, state, known, reference);
     case MotionKind::kPoseSetpoint: {
       state.Stop();
       PoseSetpoint setpoint;
       state.refused = !ToSetpoint(command, setpoint);
-      return FollowPose(config, setpoint, state.refused, state.resolved, reference);
+      return FollowPose(config, setpoint, state.refused, state.resolved, known, reference);
     }
     case MotionKind::kHome:
     case MotionKind::kJointGoal:
@@ -200,7 +207,7 @@ hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionComman
       if (!TakeGoal(config, command, now_ns, reference, state)) {
         state.Stop();
         state.refused = true;
-        return Brake(config, reference);
+        return Brake(config, known, reference);
       }
       break;
   }
@@ -209,18 +216,19 @@ hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionComman
   if (state.goal.kind == MotionKind::kJointGoal) {
     trajectory::Reference next;
     state.joints.At(t, next);
-    limits = TakeReference(config, next, state, reference);
+    limits = TakeReference(config, next, state, known, reference);
     if (t >= state.joints.Duration()) {
       Arrive(state);
     }
   } else if (state.goal.kind == MotionKind::kPoseGoal) {
-    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.resolved, reference);
+    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.resolved, known,
+                        reference);
     if (t >= state.pose.Duration() && StandsAt(config, state.X_BE, reference)) {
       Arrive(state);
     }
     state.refused = state.refused || t > state.pose.Duration() + kLateS;
   } else {
-    return Brake(config, reference);
+    return Brake(config, known, reference);
   }
   if (state.refused) {
     state.Stop();

@@ -9,6 +9,7 @@
 
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/control/resolve_motion.hpp"
+#include "firmware/core/guard/known_clearances.hpp"
 #include "firmware/core/moves/motion_command.hpp"
 #include "firmware/core/trajectory/joint_move.hpp"
 #include "firmware/core/trajectory/reference.hpp"
@@ -39,9 +40,10 @@ struct MotionState {
 void NoteAsked(const config::ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept;
 
 // One tick of a commanded motion: advances `reference`. Returns the limits that acted or forbade it. If they
-// or an invalid command forbid it, sets `state.refused` and brakes. Real-time: yes; a new goal takes some 10
-// us.
+// or an invalid command forbid it, sets `state.refused` and brakes. `known`: as for guard::LimitsPassed.
+// Real-time: yes; a new goal takes some 10 us.
 hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
-                           MotionState& state, trajectory::Reference& reference) noexcept;
+                           MotionState& state, guard::KnownClearances& known,
+                           trajectory::Reference& reference) noexcept;
 
 }  // namespace fovea::moves

@@ -79,7 +79,8 @@ PoseSetpoint PoseAt(const model::Pose& X_BE, const trajectory::SynchronisedMove&
 }
 
 hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
-                         control::ResolvedMotion& motion, trajectory::Reference& reference) noexcept {
+                         control::ResolvedMotion& motion, guard::KnownClearances& known,
+                         trajectory::Reference& reference) noexcept {
   model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
   model::Mat6N J;
@@ -90,7 +91,7 @@ hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& 
                          e.tail<3>().norm() <= config.move.pose_error_max / kLength);
   if (refused) {
     return guard::GuardMotion(config, guard::MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)),
-                              poses.X_BE.p, J_E_B, poses, reference);
+                              poses.X_BE.p, J_E_B, known, reference);
   }
   // The reference is one tick late by design; the feedback must not correct that.
   Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - hal::kTickPeriodS * setpoint.V_BE_B);
@@ -113,7 +114,7 @@ hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& 
   if (dq_before.size() == wish.dq.size()) {
     wish.ddq = (wish.dq - dq_before) / hal::kTickPeriodS;
   }
-  return motion.limits | guard::GuardMotion(config, wish, poses.X_BE.p, J_E_B, poses, reference);
+  return motion.limits | guard::GuardMotion(config, wish, poses.X_BE.p, J_E_B, known, reference);
 }
 
 bool StandsAt(const config::ServoConfig& config, const model::Pose& X_BE,

@@ -4,6 +4,7 @@
 
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/control/resolve_motion.hpp"
+#include "firmware/core/guard/known_clearances.hpp"
 #include "firmware/core/moves/motion_command.hpp"
 #include "firmware/core/trajectory/reference.hpp"
 #include "firmware/core/trajectory/synchronised_move.hpp"
@@ -35,7 +36,8 @@ struct PoseSetpoint {
 // effector is further from it than servo.pose_error_max: a limit blocks the path. `motion`: that of the
 // previous tick, with empty dq in the first; becomes that of this tick. Real-time: yes.
 hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
-                         control::ResolvedMotion& motion, trajectory::Reference& reference) noexcept;
+                         control::ResolvedMotion& motion, guard::KnownClearances& known,
+                         trajectory::Reference& reference) noexcept;
 
 // True if the reference stands at `X_BE`. Real-time: yes.
 [[nodiscard]] bool StandsAt(const config::ServoConfig& config, const model::Pose& X_BE,

@@ -147,8 +147,8 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     state_.holds = true;
   }
   if (state_.mode.mode == hal::Mode::kMove) {
-    state_.limits =
-        moves::FollowMotion(config_, inputs.motion, state_.now_ns, state_.motion, state_.reference);
+    state_.limits = moves::FollowMotion(config_, inputs.motion, state_.now_ns, state_.motion, state_.known,
+                                        state_.reference);
     CheckFollowing();
     state_.motion.off += kOffShare * (state_.reference.q - state_.q - state_.motion.off);
     return;
@@ -163,13 +163,11 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     LatchFault(hal::Fault::kNonFiniteControl, -1);
     return;
   }
-  model::ArmPoses reference_poses;
-  model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
   if (state_.mode.mode == hal::Mode::kBoot && !IsOutside()) {
     state_.limits |= hal::Bit(hal::Limit::kObstacle);  // the reason why Boot continues
   }
   state_.limits |=
-      guard::GuardMotion(config_, wish, state_.poses.X_BE.p, state_.J_E_B, reference_poses, state_.reference);
+      guard::GuardMotion(config_, wish, state_.poses.X_BE.p, state_.J_E_B, state_.known, state_.reference);
   CheckFollowing();
   UpdateBlockedTime();
   NoteSteering();

@@ -15,6 +15,7 @@
 #include "firmware/core/estimate/push.hpp"
 #include "firmware/core/features/feature_state.hpp"
 #include "firmware/core/guard/fault_stop.hpp"
+#include "firmware/core/guard/known_clearances.hpp"
 #include "firmware/core/model/dynamics.hpp"
 #include "firmware/core/motion_laws/motion_law.hpp"
 #include "firmware/core/moves/follow_motion.hpp"
@@ -80,8 +81,9 @@ struct ServoState {
   // guard
   control::ResolvedMotion resolved;
   trajectory::Reference reference;
-  bool holds = false;         // the reference has started at the arm's state
-  moves::MotionState motion;  // mode Move
+  bool holds = false;            // the reference has started at the arm's state
+  moves::MotionState motion;     // mode Move
+  guard::KnownClearances known;  // from the proofs before
   hal::LimitSet limits = 0;
 
   // motion law and clamp

@@ -64,6 +64,8 @@ class VelocityPath {
 
   // VelocityChange::At, to the last bit. Real-time: yes.
   [[nodiscard]] AxisState At(double t) const noexcept;
+  // The state after the change.
+  [[nodiscard]] const AxisState& End() const noexcept { return end_; }
 
  private:
   std::array<JerkPhase, VelocityChange::kNumPhases> phases_;

@@ -111,6 +111,7 @@ inline Run Loop(const config::ServoConfig& config, const Start& start, const Res
   Run run;
   double e_start = 0.0;
   Seen first, before;
+  guard::KnownClearances known;
   const int ticks = static_cast<int>(limit_s / kTickS);
   for (int tick = 0; tick < ticks; ++tick) {
     const model::ArmPoses poses = PosesAt(config, reference.q);
@@ -150,7 +151,7 @@ inline Run Loop(const config::ServoConfig& config, const Start& start, const Res
     const model::VecN wish = resolve({config, feature, poses, J_C, J_E_B, reference});
     const double x = std::min(tick * kTickS / config.law.smooth_start_s, 1.0);
     const model::VecN dq_des = x * x * (3.0 - 2.0 * x) * wish;
-    guard::GuardMotion(config, guard::MotionWish::Velocity(dq_des), poses.X_BE.p, J_E_B, poses, reference);
+    guard::GuardMotion(config, guard::MotionWish::Velocity(dq_des), poses.X_BE.p, J_E_B, known, reference);
   }
   return run;
 }

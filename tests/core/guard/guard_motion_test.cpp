@@ -40,7 +40,7 @@ class Walker {
   hal::LimitSet Stop() { return Step(StopTogether(config_, reference_)); }
   hal::LimitSet Step(const MotionWish& wish) {
     const trajectory::Reference before = reference_;
-    const hal::LimitSet limits = GuardMotion(config_, wish, poses_.X_BE.p, J_E_B_, poses_, reference_);
+    const hal::LimitSet limits = GuardMotion(config_, wish, poses_.X_BE.p, J_E_B_, known_, reference_);
     for (int i = 0; i < reference_.q.size(); ++i) {
       const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
       const double half = 0.5 * (joint.q_max - joint.q_min) - config_.guard.joint_position_margin;
@@ -88,6 +88,7 @@ class Walker {
   config::ServoConfig config_;
   trajectory::Reference reference_;
   model::ArmPoses poses_;
+  KnownClearances known_;
   model::LinearJacobian J_E_B_;
 };
 
