@@ -22,46 +22,64 @@ struct NearSight {
   int body = 0;               // the link; 0: the base or a box, which do not move
 };
 
-// The links' distances from the line of sight to O's origin. All lines of sight begin at the camera, so none
-// is further from this one than its end is from O: most links are too far from all of them.
-struct Links {
-  std::array<double, model::ArmShape::kMostBodies> away2{};  // of the links' middles, squared [m^2]
-  double spread = 0.0;                                       // of the lines' ends about O [m]
+// A line of sight from the camera.
+struct SightLine {
+  Vec3 p_BC = Vec3::Zero();  // the camera, in B [m]
+  Vec3 way = Vec3::Zero();   // to the point that it sees, in B [m]
+  double length2 = 0.0;      // of `way`, squared [m^2]
 
-  explicit Links(const Sight& sight) noexcept {
-    const Vec3 line = sight.X_BO.p - sight.X_BC.p;
-    const double length2 = line.squaredNorm();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(sight.bodies.size); ++i) {
-      const Vec3 middle = sight.bodies.body[i].middle - sight.X_BC.p;
-      const double s = length2 > 0.0 ? std::clamp(middle.dot(line) / length2, 0.0, 1.0) : 0.0;
-      away2[i] = (middle - s * line).squaredNorm();
-    }
-    double spread2 = 0.0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
-      spread2 = std::max(spread2, sight.outline.p_OP[k].squaredNorm());
-    }
-    spread = std::sqrt(spread2);
-  }
+  SightLine(const Vec3& p_BC_, const Vec3& p_BP) noexcept
+      : p_BC(p_BC_), way(p_BP - p_BC_), length2(way.squaredNorm()) {}
 
-  // True if no line of sight comes nearer to link `i`, whose ball reaches so far, than `gap`.
-  [[nodiscard]] bool AreFurther(std::size_t i, double reach, double gap) const noexcept {
-    const double apart = gap + reach + spread;
-    return apart > 0.0 && away2[i] > apart * apart;
+  // The squared distance of a point from the line [m^2].
+  [[nodiscard]] double Away2(const Vec3& p_B) const noexcept {
+    const Vec3 from_camera = p_B - p_BC;
+    const double along = from_camera.dot(way);
+    const double s = along <= 0.0 ? 0.0 : along >= length2 ? 1.0 : along / length2;
+    return (from_camera - s * way).squaredNorm();
   }
 };
+
+// How many links may come into the view: not those that hold the camera.
+int CountLinks(const Sight& sight) noexcept {
+  return std::max(sight.bodies.size - model::ArmShape::kNeighbours - 1, 0);
+}
+
+// A distance that some link surely has from a line of sight: of the one that seems the nearest. Links whose
+// ball about their middle is further need no closer look.
+double SomeGap(const Sight& sight, const SightLine& line) noexcept {
+  double least = HUGE_VAL;
+  int seems = -1;
+  for (int i = 0; i < CountLinks(sight); ++i) {
+    const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(i)];
+    if (const double gap = std::sqrt(line.Away2(link.middle)) - link.reach; gap < least) {
+      least = gap;
+      seems = i;
+    }
+  }
+  if (seems < 0) {
+    return HUGE_VAL;
+  }
+  const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(seems)];
+  const Vec3 p_BP = line.p_BC + line.way;
+  return model::NearestOfSegments(line.p_BC, p_BP, link.p_BA, link.p_BB).distance - link.radius;
+}
 
 // Over all links, boxes and lines of sight.
 NearSight NearestOf(const Sight& sight) noexcept {
   constexpr double kShare = 0.9;  // of a line, from the camera, that boxes must keep clear
-  const Links links(sight);
+  constexpr double kRounding = 1e-9;  // [m]
   NearSight nearest;
+  double enough = HUGE_VAL;  // the nearest link has this gap at most
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
     const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];
-    for (int i = 0; i + model::ArmShape::kNeighbours + 1 < sight.bodies.size; ++i) {
-      const auto body = static_cast<std::size_t>(i);
-      const PlacedCapsule& link = sight.bodies.body[body];
-      if (links.AreFurther(body, link.reach, nearest.gap)) {
-        continue;
+    const SightLine line(sight.X_BC.p, p_BP);
+    enough = k == 0 ? SomeGap(sight, line) : enough;
+    for (int i = 0; i < CountLinks(sight); ++i) {
+      const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(i)];
+      const double apart = std::min(enough, nearest.gap) + link.reach + kRounding;
+      if (apart > 0.0 && line.Away2(link.middle) > apart * apart) {
+        continue;  // the link's ball is further
       }
       const model::SegmentPair axes = model::NearestOfSegments(sight.X_BC.p, p_BP, link.p_BA, link.p_BB);
       const double gap = axes.distance - link.radius;

@@ -164,6 +164,7 @@ void Take(const config::ServoConfig& config, const Plan& plan, const WaySight& s
   way.shift.setZero(end.q.size());
   model::ArmPoses poses;
   model::ComputePoses(config.arm, end.q, poses);
+  way.X_BC_end = poses.X_BE * config.X_EC;
   model::ComputeJacobian(config.arm, poses, config.X_EC, way.pull);
   model::Mat6 A = way.pull.lazyProduct(way.pull.transpose());
   A.diagonal().array() += kDamping;
@@ -222,9 +223,7 @@ void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const 
     Change(Way::kLaw, PlanEvent::kDone, sight.now_ns, way);
     return;
   }
-  model::ArmPoses poses;
-  model::ComputePoses(config.arm, way.q_end, poses);
-  const model::Vec6 twist = GoalTwist(config, sight, plan, poses.X_BE * config.X_EC);
+  const model::Vec6 twist = GoalTwist(config, sight, plan, way.X_BC_end);
   const model::VecN shift = way.pull.transpose().lazyProduct(twist);
   if (IsElsewhere(config, sight, plan) || !(shift.lpNorm<Eigen::Infinity>() < kShiftMost)) {
     const bool at_once = MayPlanFor(config, sight, way);

@@ -57,6 +57,7 @@ struct WayToGoal {
   double trust = 0.0;            // in the eye, 0 to 1: how fast a plan is followed
   model::VecN shift;             // plan: of its end, for the present estimate [num_joints]
   model::VecN q_end;             // of the last plan [num_joints]
+  model::Pose X_BC_end;          // of the camera at q_end
   model::Vec3 p_BO_end = model::Vec3::Zero();  // the target that it reaches [m]
   model::Mat6N pull;                           // transposed: a twist of the camera at q_end to joints
 

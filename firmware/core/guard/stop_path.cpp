@@ -24,8 +24,10 @@ bool Within(double q, double q_now, double low, double high) noexcept {
 // The stop as a function of time.
 class StopWay {
  public:
-  StopWay(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept
-      : config_(config), reference_(reference), levers_(barriers::Levers(config.arm, config.guard.hand)) {
+  // `levers` and `reference` must outlive the object.
+  StopWay(const config::ServoConfig& config, const barriers::PerJoint& levers,
+          const trajectory::Reference& reference) noexcept
+      : config_(config), levers_(levers), reference_(reference) {
     for (int i = 0; i < reference.q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const model::Joint& joint = config.arm.joints[k];
@@ -41,25 +43,34 @@ class StopWay {
   // The tick's own step precedes the continuous motion.
   [[nodiscard]] double Duration() const noexcept { return duration_s_ + hal::kTickPeriodS; }
 
-  // Upper bounds from some time on: speed of any point of the arm [m/s], angular speed of its hand [rad/s].
+  // Upper bounds: speed of any point of the arm [m/s], angular speed of its hand [rad/s].
   struct Most {
-    double speed = 0.0;
+    double speed = kSlack;
     double turn = 0.0;
   };
 
-  // The joints' positions and velocities `t` seconds into the stop. Returns the bounds from then on.
-  Most At(double t, model::VecN& q, model::VecN& dq) const noexcept {
+  // The joints' positions, velocities and accelerations `t` seconds into the stop. Returns the bounds at that
+  // time.
+  Most At(double t, trajectory::Reference& joints) const noexcept {
     Most most;
-    for (int i = 0; i < q.size(); ++i) {
+    for (int i = 0; i < joints.q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const trajectory::AxisState state = paths_[k].At(t);
-      q[i] = Start(i) + state.x;
-      dq[i] = state.v;
-      const double speed = SpeedMost(k, state.v, state.a);
-      most.speed += levers_[k] * speed;
-      most.turn += config_.arm.joints[k].type == model::JointType::kRevolute ? speed : 0.0;
+      joints.q[i] = Start(i) + state.x;
+      joints.dq[i] = state.v;
+      joints.ddq[i] = state.a;
+      Add(k, std::fabs(state.v), most);
     }
-    most.speed = std::max(most.speed, kSlack);
+    return most;
+  }
+
+  // The bounds from the time on at which the joints are so.
+  [[nodiscard]] Most From(const trajectory::Reference& joints) const noexcept {
+    Most most;
+    for (int i = 0; i < joints.q.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      Add(k, SpeedMost(k, joints.dq[i], joints.ddq[i]), most);
+    }
     return most;
   }
 
@@ -69,8 +80,6 @@ class StopWay {
       q[i] = Start(i) + paths_[static_cast<std::size_t>(i)].End().x;
     }
   }
-
-  [[nodiscard]] const barriers::PerJoint& Levers() const noexcept { return levers_; }
 
   // An upper bound of every point's distance between its place at the posture `q` and its places during the
   // stop, which ends at `q_end`. A joint that does not reverse is furthest away where the stop begins or
@@ -100,17 +109,21 @@ class StopWay {
   [[nodiscard]] double Start(int i) const noexcept {
     return reference_.q[i] + reference_.dq[i] * hal::kTickPeriodS;
   }
+  void Add(std::size_t k, double speed, Most& most) const noexcept {
+    most.speed += levers_[k] * speed;
+    most.turn += config_.arm.joints[k].type == model::JointType::kRevolute ? speed : 0.0;
+  }
   // A joint is never faster than now, or than after it has released its acceleration.
   [[nodiscard]] double SpeedMost(std::size_t k, double v, double a) const noexcept {
     return std::max(std::fabs(v), std::fabs(trajectory::SettledVelocity(v, a, JerkOf(k))));
   }
 
   const config::ServoConfig& config_;
+  const barriers::PerJoint& levers_;
   const trajectory::Reference& reference_;
   std::array<trajectory::VelocityPath, model::kMaxJoints> paths_;
   std::array<double, model::kMaxJoints> durations_s_{};
   double duration_s_ = 0.0;
-  barriers::PerJoint levers_;
 };
 
 // Upper bounds of the hand's speeds at postures not far from `q_now`, without their poses.
@@ -127,31 +140,35 @@ class HandSpeeds {
     model::ComputeLinearJacobian(arm, poses_now, poses_now.X_BE.p, J_);
   }
 
-  struct Most {
-    double speed = 0.0;  // linear [m/s]
-    double turn = 0.0;   // angular [rad/s]
-  };
-
-  [[nodiscard]] Most At(const model::VecN& q, const model::VecN& dq) const noexcept {
+  // Of its linear velocity [m/s].
+  [[nodiscard]] double Speed(const model::VecN& q, const model::VecN& dq) const noexcept {
     double beyond = 0.0;  // what the joints beyond joint i have moved the hand by [m]
     for (int i = 0; i < q.size(); ++i) {
       beyond += levers_[static_cast<std::size_t>(i)] * std::fabs(q[i] - q_now_[i]);
     }
     double turned = 0.0;  // by the joints up to joint i [rad]
-    Most more;            // than with the axes of `q_now`
+    double more = 0.0;    // than with the axes of `q_now`
     model::Vec3 v = model::Vec3::Zero();
     for (int i = 0; i < q.size(); ++i) {
       const double lever = levers_[static_cast<std::size_t>(i)];
       const double moved = std::fabs(q[i] - q_now_[i]);
-      const double rate = std::fabs(dq[i]);
-      more.turn += rate * turned;
       turned += moved;
       beyond -= lever * moved;
-      more.speed += rate * (lever * turned + beyond);
+      more += std::fabs(dq[i]) * (lever * turned + beyond);
       v += dq[i] * J_.col(i);
     }
-    return {v.norm() + more.speed + kSlack,
-            model::AngularVelocity(arm_, poses_now_, dq).norm() + more.turn + kSlack};
+    return v.norm() + more + kSlack;
+  }
+
+  // Of its angular velocity [rad/s].
+  [[nodiscard]] double Turn(const model::VecN& q, const model::VecN& dq) const noexcept {
+    double turned = 0.0;
+    double more = 0.0;
+    for (int i = 0; i < q.size(); ++i) {
+      more += std::fabs(dq[i]) * turned;
+      turned += std::fabs(q[i] - q_now_[i]);
+    }
+    return model::AngularVelocity(arm_, poses_now_, dq).norm() + more + kSlack;
   }
 
  private:
@@ -206,7 +223,8 @@ class Bounds {
 hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::Reference& reference,
                            model::LazyPoses& now, KnownClearances& known) noexcept {
   const config::GuardConfig& guard = config.guard;
-  const StopWay way(config, reference);
+  const barriers::PerJoint& levers = known.LeversOf(config);
+  const StopWay way(config, levers, reference);
   const double duration = way.Duration();
   const model::VecN& q_now = now.q();
   model::VecN q_end = reference.q;
@@ -221,43 +239,47 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     }
   }
 
-  // Arm and hand: at times that are denser at the start, because the arm certainly moves along that part. The
-  // bounds are looked at only where no known posture is near enough, and the hand's speeds while they could
-  // exceed their limits.
-  Bounds bounds(config, now, known);
+  // Arm and hand. The bounds are looked at only where no known posture is near enough, and the hand's speeds
+  // only while they could exceed their limits.
   const KnownClearances::Posture& nearby = known.last();
   const bool are_clear = nearby.clearance > 0.0 && way.FurthestFrom(nearby.q, q_end) <= nearby.clearance;
   const double speed_most = config::kSpeedShareMost * config::SpeedLimitOfReference(guard);
   const double turn_most = config::kTurnShareMost * config::TurnLimitOfReference(guard);
+  const auto is_slow = [&](const StopWay::Most& most) {
+    return most.speed <= speed_most && most.turn <= turn_most;
+  };
+  if (are_clear && is_slow(way.From(reference))) {
+    return 0;
+  }
+  // At times that are denser at the start, because the arm certainly moves along that part.
+  Bounds bounds(config, now, known);
   std::optional<HandSpeeds> hand;
   std::optional<model::ArmPoses> poses;
-  model::VecN q = reference.q;
-  model::VecN dq = reference.dq;
+  trajectory::Reference joints = reference;
   for (int sample = 0; sample < kStopSamples; ++sample) {
     const double share = static_cast<double>(sample) / (kStopSamples - 1);
-    const StopWay::Most most = way.At(duration * share * share, q, dq);
-    const bool may_be_fast = most.speed > speed_most || most.turn > turn_most;
-    if (are_clear && !may_be_fast) {
-      return 0;  // nor will it be
+    const StopWay::Most most = way.At(duration * share * share, joints);
+    if (are_clear && is_slow(most) && is_slow(way.From(joints))) {
+      return 0;
     }
-    if (may_be_fast && !hand) {
-      hand.emplace(config.arm, way.Levers(), q_now, now.Get());
+    if (!is_slow(most) && !hand) {
+      hand.emplace(config.arm, levers, q_now, now.Get());
     }
-    const HandSpeeds::Most hand_most = may_be_fast ? hand->At(q, dq) : HandSpeeds::Most{};
-    const bool checks_speed = most.speed > speed_most && !(hand_most.speed <= speed_most);
-    const bool checks_turn = most.turn > turn_most && !(hand_most.turn <= turn_most);
-    const bool checks_bounds = !are_clear && !known.Cover(way.Levers(), q);
+    const bool checks_speed = most.speed > speed_most && !(hand->Speed(joints.q, joints.dq) <= speed_most);
+    const bool checks_turn = most.turn > turn_most && !(hand->Turn(joints.q, joints.dq) <= turn_most);
+    const bool checks_bounds = !are_clear && !known.Cover(joints.q);
     if (checks_speed || checks_turn || checks_bounds) {
-      model::ComputePoses(config.arm, q, poses ? *poses : poses.emplace());
+      model::ComputePoses(config.arm, joints.q, poses ? *poses : poses.emplace());
     }
-    if (checks_speed && model::LinearVelocity(config.arm, *poses, poses->X_BE.p, dq).norm() > speed_most) {
+    if (checks_speed &&
+        model::LinearVelocity(config.arm, *poses, poses->X_BE.p, joints.dq).norm() > speed_most) {
       return hal::Bit(hal::Limit::kCartesianSpeed);
     }
-    if (checks_turn && model::AngularVelocity(config.arm, *poses, dq).norm() > turn_most) {
+    if (checks_turn && model::AngularVelocity(config.arm, *poses, joints.dq).norm() > turn_most) {
       return hal::Bit(hal::Limit::kRotationSpeed);
     }
     if (checks_bounds) {
-      if (const hal::LimitSet passed = bounds.Look(q, *poses); passed != 0) {
+      if (const hal::LimitSet passed = bounds.Look(joints.q, *poses); passed != 0) {
         return passed;
       }
     }

@@ -79,7 +79,8 @@ void ModeFields(Archive& a, T& s) noexcept {
   Entries(a, s.R_BC_held);
 }
 
-// Without the note's event, which each tick writes anew, and without `pull`, which follows from q_end.
+// Without the note's event, which each tick writes anew, and without `X_BC_end` and `pull`, which follow from
+// q_end.
 template <class Archive, class T>
 void WayFields(Archive& a, T& w) noexcept {
   WayNoteFields(a, w.note);
@@ -299,7 +300,10 @@ void EachGroup(State& s, const Visit& visit) noexcept {
         [&s](auto& a) { PoseHypothesesFields(a, s.predict.hypotheses); });
   visit(Pace::kTick, "mode", [&s](auto& a) { ModeFields(a, s); });
   visit(Pace::kSeeking, "way to the goal", [&s](auto& a) { WayFields(a, s.way); });
-  visit(Pace::kFollows, "pull of the way", [&s](auto& a) { SizedEntries(a, s.way.pull); });
+  visit(Pace::kFollows, "end of the way", [&s](auto& a) {
+    PoseFields(a, s.way.X_BC_end);
+    SizedEntries(a, s.way.pull);
+  });
   visit(Pace::kFollows, "plan", [&s](auto& a) { PlansFields(a, s.plans); });
   visit(Pace::kTick, "resolved motion", [&s](auto& a) { ResolvedFields(a, s.resolved); });
   visit(Pace::kTick, "reference", [&s](auto& a) {

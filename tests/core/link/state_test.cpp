@@ -28,7 +28,7 @@ static_assert(sizeof(estimate::PredictState) == 61104);
 static_assert(sizeof(estimate::EncoderWatch) == 1096);
 static_assert(sizeof(estimate::EyeWatch) == 232);
 static_assert(sizeof(task::ModeState) == 5);
-static_assert(sizeof(control::WayToGoal) == 704);
+static_assert(sizeof(control::WayToGoal) == 800);
 static_assert(sizeof(trajectory::PlanReceiver) == 14496);
 static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
