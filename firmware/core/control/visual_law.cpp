@@ -20,18 +20,29 @@ void ChooseInteraction(const config::LawConfig& config, const features::Interact
   LineOf(config.law).interaction(L_s_star, feature);
 }
 
-void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
-               const features::FeatureState& feature, const LawJoints& joints,
-               VisualLawOutput& output) noexcept {
+void CommandFeature(const config::LawConfig& config, const features::FeatureState& feature,
+                    const LawJoints& joints, VisualLawOutput& output) noexcept {
   output.e = feature.s_star - feature.s;
   const LawScene scene{feature, joints, output.e, GainAt(config, output.e.norm())};
   output.ds_cmd = LineOf(config.law).motion(scene) - feature.ds_dt_target;
+}
+
+void CommandJoints(const config::LawConfig& config, const model::ArmModel& arm,
+                   const features::FeatureState& feature, const LawJoints& joints,
+                   VisualLawOutput& output) noexcept {
   features::InteractionMatrix L = feature.L_s;
   output.task.v = output.ds_cmd;
   CompressTask(L, output.task.v);
   output.task.J = L.lazyProduct(joints.J_C);
   output.task.dq_0 = FreeWish(config, arm, joints.q, joints.J_C);
   output.task.weight.setOnes(joints.q.size());
+}
+
+void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
+               const features::FeatureState& feature, const LawJoints& joints,
+               VisualLawOutput& output) noexcept {
+  CommandFeature(config, feature, joints, output);
+  CommandJoints(config, arm, feature, joints, output);
 }
 
 double Progress(const features::FeatureState& feature, const features::FeatureVector& ds_cmd,

@@ -24,7 +24,14 @@ struct VisualLawOutput {
   MotionTask task;                 // before smooth start and limits
 };
 
-// `feature.L_s`: as ChooseInteraction left it. Real-time: yes.
+// The law's two lines, one after the other. `feature.L_s`: as ChooseInteraction left it. Real-time: yes.
+void CommandFeature(const config::LawConfig& config, const features::FeatureState& feature,
+                    const LawJoints& joints, VisualLawOutput& output) noexcept;
+void CommandJoints(const config::LawConfig& config, const model::ArmModel& arm,
+                   const features::FeatureState& feature, const LawJoints& joints,
+                   VisualLawOutput& output) noexcept;
+
+// Both. Real-time: yes.
 void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
                const features::FeatureState& feature, const LawJoints& joints,
                VisualLawOutput& output) noexcept;

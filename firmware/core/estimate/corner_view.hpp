@@ -33,7 +33,17 @@ using CornerSlope =
 [[nodiscard]] bool ExpectCorners(const features::Polygon& polygon, const model::Pose& X_CB,
                                  const model::Pose& X_BO, features::SeenCorners::Vector& xy) noexcept;
 
-// The derivative of these corners; all must be in front of the camera. Real-time: yes.
+// The expected corners of a pose with the covariance `P`: their mean, their slope `H` over the pose's errors,
+// and the covariance `bent` (its lower half) that this linear slope does not explain. Sigma points with P's
+// own covariance give them (Julier and Uhlmann, Unscented filtering and nonlinear estimation, 2004), because
+// near the cylinder through a triangle's corners its poses lie on a fold. False if a corner of one is not in
+// front of the camera. Real-time: yes.
+[[nodiscard]] bool ExpectAround(const features::Polygon& polygon, const model::Pose& X_CB,
+                                const model::Pose& X_BO, const model::Mat6& P,
+                                features::SeenCorners::Vector& mean, CornerSlope& H,
+                                features::SeenCorners::Covariance& bent) noexcept;
+
+// The derivative of the expected corners; all must be in front of the camera. Real-time: yes.
 void SlopeOfCorners(const features::Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
                     CornerSlope& H) noexcept;
 

@@ -43,15 +43,20 @@ class JointHistory {
   int size_ = 0;
 };
 
+// The links' poses of `arm` at `stamp_ns`. False if the history does not reach back that far. Real-time: yes.
+[[nodiscard]] bool PosesAt(const JointHistory& history, const model::ArmModel& arm, std::int64_t stamp_ns,
+                           model::ArmPoses& poses) noexcept;
+
 // The pose of a camera at `X_EC` in the hand of `arm` at `stamp_ns`. False, with `X_BC` unchanged, if the
 // history does not reach back that far. Real-time: yes.
 [[nodiscard]] bool CameraPoseAt(const JointHistory& history, const model::ArmModel& arm,
                                 const model::Pose& X_EC, std::int64_t stamp_ns, model::Pose& X_BC) noexcept;
 
-// The camera's mean twist [v; w] in its own axes [m/s, rad/s] within 10 ms around `stamp_ns`, at whose pose
-// it is `X_BC`; of the part that the history has. Zero if it has less than half of that. Real-time: yes.
+// The camera's mean twist [v; w] in its own axes [m/s, rad/s] within 10 ms around `stamp_ns`, at which the
+// links are at `poses`; of the part that the history has. Zero if it has less than half of that. Real-time:
+// yes.
 [[nodiscard]] model::Vec6 CameraTwistAt(const JointHistory& history, const model::ArmModel& arm,
                                         const model::Pose& X_EC, std::int64_t stamp_ns,
-                                        const model::Pose& X_BC) noexcept;
+                                        const model::ArmPoses& poses) noexcept;
 
 }  // namespace fovea::estimate

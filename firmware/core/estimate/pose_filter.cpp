@@ -21,10 +21,8 @@ constexpr double kStartTurnSigma = 0.5;      // how fast a target may turn when 
 constexpr double kStartPositionSigma = 1.0;  // error of the corners' pose in directions that they do
 constexpr double kStartTiltSigma = 0.3;      // not determine [m, rad]
 constexpr double kMeanTime = 0.1;  // the configured jerk and angular acceleration are means over this [s]
-constexpr double kLeastVariance = 1e-16;  // of a pose, so that rounding leaves it positive [m^2, rad^2]
-constexpr double kNoWay = 1e9;            // a distance that passes no gate
+constexpr double kNoWay = 1e9;     // a distance that passes no gate
 
-using Rows6 = CornerSlope;
 using Gain = Eigen::Matrix<double, Eigen::Dynamic, PoseFilter::kDim, Eigen::ColMajor, 2 * Polygon::kMost,
                            PoseFilter::kDim>;
 
@@ -37,6 +35,33 @@ void AddLower(const Left& a, const Right& b, SeenCorners::Covariance& S) noexcep
       S(i, j) += a.row(i).cwiseProduct(b.row(j)).sum();
     }
   }
+}
+
+// H P + by_late P_late: the covariance of the seen corners with the state. `H`: their slope over the pose,
+// `by_late`: over the stamps' common error. Two rows by two columns: each entry of H and P is loaded half as
+// often.
+Gain WithState(const CornerSlope& H, const SeenCorners::Vector& by_late,
+               const Eigen::Matrix<double, PoseFilter::kDim, PoseFilter::kDim>& P) noexcept {
+  Gain Y(H.rows(), PoseFilter::kDim);
+  for (Eigen::Index j = 0; j < PoseFilter::kDim; j += 2) {
+    for (Eigen::Index i = 0; i < Y.rows(); i += 2) {
+      double sum_00 = by_late[i] * P(PoseFilter::kLate, j);
+      double sum_10 = by_late[i + 1] * P(PoseFilter::kLate, j);
+      double sum_01 = by_late[i] * P(PoseFilter::kLate, j + 1);
+      double sum_11 = by_late[i + 1] * P(PoseFilter::kLate, j + 1);
+      for (Eigen::Index k = 0; k < H.cols(); ++k) {
+        sum_00 += H(i, k) * P(k, j);
+        sum_10 += H(i + 1, k) * P(k, j);
+        sum_01 += H(i, k) * P(k, j + 1);
+        sum_11 += H(i + 1, k) * P(k, j + 1);
+      }
+      Y(i, j) = sum_00;
+      Y(i + 1, j) = sum_10;
+      Y(i, j + 1) = sum_01;
+      Y(i + 1, j + 1) = sum_11;
+    }
+  }
+  return Y;
 }
 
 // P -= Y^T Y, and P = (P + P^T) / 2. The product is symmetric to the last bit; P is not quite. Two columns by
@@ -65,51 +90,6 @@ void Reduce(const Gain& Y, Eigen::Matrix<double, PoseFilter::kDim, PoseFilter::k
       }
     }
   }
-}
-
-// The expected corners of a pose with the covariance `P`: their mean, their slope `H` over the pose's errors,
-// and the covariance `bent` (its lower half) that this linear slope does not explain. Sigma points with P's
-// own covariance give them (Julier and Uhlmann, Unscented filtering and nonlinear estimation, 2004), because
-// near the cylinder through a triangle's corners its poses lie on a fold.
-bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
-                  const model::Mat6& P, SeenCorners::Vector& mean, Rows6& H,
-                  SeenCorners::Covariance& bent) noexcept {
-  constexpr double kFar = 2.449489742783178;  // sqrt(6)
-  const int size = 2 * polygon.num_corners;
-  model::Mat6 L = P;
-  L.diagonal().array() += kLeastVariance;
-  model::FactorCholesky(L);
-  L.triangularView<Eigen::StrictlyUpper>().setZero();
-  std::array<SeenCorners::Vector, 12> at;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const model::Vec6 off = kFar * L.col(static_cast<Eigen::Index>(i));
-    const Mat3 turn = model::RotationOf(off.tail<3>());
-    const model::Pose ahead{turn * X_BO.R, X_BO.p + off.head<3>()};
-    const model::Pose behind{turn.transpose() * X_BO.R, X_BO.p - off.head<3>()};
-    if (!ExpectCorners(polygon, X_CB, ahead, at[i]) || !ExpectCorners(polygon, X_CB, behind, at[i + 6])) {
-      return false;
-    }
-  }
-  mean.setZero(size);
-  for (const SeenCorners::Vector& corners : at) {
-    mean += corners / 12.0;
-  }
-  H.resize(size, 6);
-  bent.setZero(size, size);
-  for (std::size_t i = 0; i < 6; ++i) {
-    const SeenCorners::Vector slope = (at[i] - at[i + 6]) / (2.0 * kFar);
-    const SeenCorners::Vector bow = 0.5 * (at[i] + at[i + 6]) - mean;
-    H.col(static_cast<Eigen::Index>(i)) = slope;
-    for (Eigen::Index c = 0; c < size; ++c) {
-      for (Eigen::Index r = c; r < size; ++r) {
-        bent(r, c) += bow[r] * bow[c] / 6.0;
-      }
-    }
-  }
-  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 2 * Polygon::kMost> turned = H.transpose();
-  model::SolveLowerTransposed(L, turned);
-  H = turned.transpose();
-  return true;
 }
 
 // The derivative of the corners by the camera's twist in C; zero if a corner is not in front of the camera.
@@ -248,7 +228,7 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
   model::Mat6 cov;
   for (int round = 0; round <= kRounds; ++round) {
     SeenCorners::Vector e;
-    Rows6 H;
+    CornerSlope H;
     if (!ExpectCorners(polygon, view.X_CB, start.X_BO, e)) {
       return false;
     }
@@ -292,7 +272,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   PoseFilter next = filter;
   Advance(config, hal::ToSeconds(view.stamp_ns - filter.stamp_ns), next);
   SeenCorners::Vector expected;
-  Rows6 H;
+  CornerSlope H;
   SeenCorners::Covariance bent;
   if (!ExpectAround(polygon, view.X_CB, next.X_BO, next.P.topLeftCorner<6, 6>(), expected, H, bent)) {
     return false;
@@ -310,8 +290,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   }
   // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y. Of S, only the lower half
   // is computed.
-  Gain Y = H.lazyProduct(next.P.topRows<6>());
-  Y += by_late.lazyProduct(next.P.row(F::kLate));
+  Gain Y = WithState(H, by_late, next.P);
   if (view.row_time > 0.0) {
     Y += by_rates.leftCols<3>().lazyProduct(next.P.middleRows<3>(F::kVelocity));
     Y += by_rates.rightCols<3>().lazyProduct(next.P.middleRows<3>(F::kTurnRate));

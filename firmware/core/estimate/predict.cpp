@@ -185,17 +185,15 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   if (measurement.stamp_ns > now_ns + hal::kTickPeriodNs) {
     return hal::Intake::kFromFuture;  // a filter that accepted it would reject all true ones
   }
-  const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
-    return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
-  };
   // No picture is from the future.
   const StampError lateness = Lateness(config, state, measurement.stamp_ns);
   const double late = std::max(lateness.mean_s, hal::ToSeconds(measurement.stamp_ns - now_ns));
   const std::int64_t taken_ns = measurement.stamp_ns - static_cast<std::int64_t>(late * 1e9);
-  model::Pose X_BC;
-  if (!camera_at(taken_ns, X_BC)) {
+  model::ArmPoses poses;
+  if (!PosesAt(state.history, config.arm, taken_ns, poses)) {
     return hal::Intake::kTooOld;
   }
+  const model::Pose X_BC = poses.X_BE * config.X_EC;
   const bool is_flat = config.feature.SeesOrientation();
   CornerView view;
   features::LiftedTarget lifted;
@@ -209,7 +207,8 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   PictureView picture{taken_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
   if (measurement.same_for_ns > 0) {
     // If the history does not reach back that far, the hand's motion counts from now on.
-    static_cast<void>(camera_at(picture.since_ns, picture.X_BC_since));
+    static_cast<void>(
+        CameraPoseAt(state.history, config.arm, config.X_EC, picture.since_ns, picture.X_BC_since));
   }
   if (IsStuck(config.predict.stuck_shift, picture, state.picture)) {
     return hal::Intake::kStuckPicture;
@@ -226,7 +225,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
             late,
             late_sigma,
             X_BC,
-            CameraTwistAt(state.history, config.arm, config.X_EC, taken_ns, X_BC),
+            CameraTwistAt(state.history, config.arm, config.X_EC, taken_ns, poses),
             MeasurementDoubt(config, state.history, taken_ns, X_BC, p_CO_C)};
   if (config.predict.row_time > 0.0) {
     CorrectRows(config, taken_ns, lifted, state, seen, view);

@@ -128,34 +128,37 @@ class StopWay {
 
 // Upper bounds of the hand's speeds at postures not far from `q_now`, without their poses.
 //
-// The hand's velocity is sum_i J_i(q) dq_i. A joint j that moves by d_j changes J_i by at most l_max(i, j)
-// d_j, with the levers l (levers.hpp): a joint nearer to the base than i turns J_i, and a joint beyond it
-// moves the hand. It turns joint i's axis by at most d_j, if it is nearer to the base.
+// The hand's velocity is sum_i J_i(q) dq_i. The joints beyond joint i move the hand, by at most b_i; those up
+// to joint i turn J_i, by at most t_i. So J_i changes by at most b_i + (|J_i| + b_i) t_i. From the hand
+// inwards, b grows by d_i (|J_i| + b_i) for a joint that turns by d_i, because the hand is no further than
+// that from its axis. A joint nearer to the base than i also turns i's axis.
 class HandSpeeds {
  public:
-  // `levers`, `q_now` and `poses_now` must outlive the object.
-  HandSpeeds(const model::ArmModel& arm, const barriers::PerJoint& levers, const model::VecN& q_now,
-             const model::ArmPoses& poses_now) noexcept
-      : arm_(arm), levers_(levers), q_now_(q_now), poses_now_(poses_now) {
+  // `q_now` and `poses_now` must outlive the object.
+  HandSpeeds(const model::ArmModel& arm, const model::VecN& q_now, const model::ArmPoses& poses_now) noexcept
+      : arm_(arm), q_now_(q_now), poses_now_(poses_now) {
     model::ComputeLinearJacobian(arm, poses_now, poses_now.X_BE.p, J_);
+    for (int i = 0; i < q_now.size(); ++i) {
+      lengths_[static_cast<std::size_t>(i)] = J_.col(i).norm();
+    }
   }
 
   // Of its linear velocity [m/s].
   [[nodiscard]] double Speed(const model::VecN& q, const model::VecN& dq) const noexcept {
-    double beyond = 0.0;  // what the joints beyond joint i have moved the hand by [m]
-    for (int i = 0; i < q.size(); ++i) {
-      beyond += levers_[static_cast<std::size_t>(i)] * std::fabs(q[i] - q_now_[i]);
-    }
     double turned = 0.0;  // by the joints up to joint i [rad]
-    double more = 0.0;    // than with the axes of `q_now`
-    model::Vec3 v = model::Vec3::Zero();
     for (int i = 0; i < q.size(); ++i) {
-      const double lever = levers_[static_cast<std::size_t>(i)];
+      turned += std::fabs(q[i] - q_now_[i]);
+    }
+    double beyond = 0.0;  // what the joints beyond joint i have moved the hand by [m]
+    double more = 0.0;    // than with J at `q_now`
+    model::Vec3 v = model::Vec3::Zero();
+    for (int i = static_cast<int>(q.size()) - 1; i >= 0; --i) {
       const double moved = std::fabs(q[i] - q_now_[i]);
-      turned += moved;
-      beyond -= lever * moved;
-      more += std::fabs(dq[i]) * (lever * turned + beyond);
+      const double far = lengths_[static_cast<std::size_t>(i)] + beyond;
+      more += std::fabs(dq[i]) * (beyond + far * turned);
       v += dq[i] * J_.col(i);
+      turned -= moved;
+      beyond += far * moved;
     }
     return v.norm() + more + kSlack;
   }
@@ -173,10 +176,10 @@ class HandSpeeds {
 
  private:
   const model::ArmModel& arm_;
-  const barriers::PerJoint& levers_;
   const model::VecN& q_now_;
   const model::ArmPoses& poses_now_;
   model::LinearJacobian J_;
+  hal::JointArray lengths_{};  // of J's columns [m]; of a sliding joint 1
 };
 
 // The arm's barriers, each with its margin. Past a barrier the arm may only come back.
@@ -263,7 +266,7 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
       return 0;
     }
     if (!is_slow(most) && !hand) {
-      hand.emplace(config.arm, levers, q_now, now.Get());
+      hand.emplace(config.arm, q_now, now.Get());
     }
     const bool checks_speed = most.speed > speed_most && !(hand->Speed(joints.q, joints.dq) <= speed_most);
     const bool checks_turn = most.turn > turn_most && !(hand->Turn(joints.q, joints.dq) <= turn_most);

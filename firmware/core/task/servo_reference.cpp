@@ -59,20 +59,30 @@ void ServoTask::ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept {
   state_.way.note.event = hal::PlanEvent::kNone;
   state_.on_horizon = false;
   state_.feature_valid = state_.prediction.known && ComputeFeature();
-  if (state_.feature_valid) {
-    control::ChooseInteraction(config_.law, goal_.L_s, state_.feature);
-    config::LawConfig law = config_.law;
-    if (control::KeepsPosture(state_.way, state_.prediction.p_BO)) {
-      law.q_posture = model::ToArray(state_.way.q_end);
-    }
-    control::VisualLaw(law, config_.arm, state_.feature, {state_.J_C, state_.q, state_.reference.dq},
-                       state_.law);
-    // A person leads an arm that floats.
-    const bool floats = state_.law_state.kind == config::MotionLawKind::kFloat;
-    if (IsTracking(state_.mode.mode) && !floats && trajectory::HasGoalPosture(config_)) {
-      ChooseTheWay();
-    }
+  if (!state_.feature_valid) {
+    return;
   }
+  control::ChooseInteraction(config_.law, goal_.L_s, state_.feature);
+  const control::LawJoints joints{state_.J_C, state_.q, state_.reference.dq};
+  control::CommandFeature(config_.law, state_.feature, joints, state_.law);
+  // A person leads an arm that floats.
+  const bool floats = state_.law_state.kind == config::MotionLawKind::kFloat;
+  if (IsTracking(state_.mode.mode) && !floats && trajectory::HasGoalPosture(config_)) {
+    ChooseTheWay();
+  }
+  if (IsPlanned()) {
+    return;  // the joints' motion is known
+  }
+  config::LawConfig law = config_.law;
+  if (control::KeepsPosture(state_.way, state_.prediction.p_BO)) {
+    law.q_posture = model::ToArray(state_.way.q_end);
+  }
+  control::CommandJoints(law, config_.arm, state_.feature, joints, state_.law);
+}
+
+// True if the joints follow a plan or a horizon.
+bool ServoTask::IsPlanned() const noexcept {
+  return state_.way.note.way == hal::Way::kPlan || state_.on_horizon;
 }
 
 void ServoTask::ChooseTheWay() noexcept {
@@ -177,7 +187,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
 // it is not finite.
 bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
-  const bool ahead = planned || state_.on_horizon;
+  const bool ahead = IsPlanned();
   const bool accelerates = control::LineOf(config_.law.law).commands_acceleration;
   if (!ahead && !accelerates) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);

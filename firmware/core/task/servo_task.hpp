@@ -82,6 +82,7 @@ class ServoTask final : public ServoStep {
   void ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept;
   [[nodiscard]] bool ComputeFeature() noexcept;
   void ChooseTheWay() noexcept;
+  [[nodiscard]] bool IsPlanned() const noexcept;
   void TakePlan(const trajectory::PlanPart& part) noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
   [[nodiscard]] bool ResolveWish(double slowing, guard::MotionWish& wish) noexcept;
