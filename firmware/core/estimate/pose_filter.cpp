@@ -23,13 +23,21 @@ constexpr double kStartTiltSigma = 0.3;      // not determine [m, rad]
 constexpr double kMeanTime = 0.1;  // the configured jerk and angular acceleration are means over this [s]
 constexpr double kNoWay = 1e9;     // a distance that passes no gate
 
-using Gain = Eigen::Matrix<double, Eigen::Dynamic, PoseFilter::kDim, Eigen::ColMajor, 2 * Polygon::kMost,
-                           PoseFilter::kDim>;
+using StateCovariance = Eigen::Matrix<double, PoseFilter::kDim, PoseFilter::kDim>;
+
+// A target's corners, as kSize numbers. Sizes that the compiler knows save a third of a correction's work.
+template <int kSize>
+struct OfCorners {
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Covariance = Eigen::Matrix<double, kSize, kSize>;
+  using Slope = Eigen::Matrix<double, kSize, 6>;
+  using Gain = Eigen::Matrix<double, kSize, PoseFilter::kDim>;
+};
 
 // Adds a b^T to the lower half of `S`, entry by entry; the Cholesky factor reads no other half. `a`, `b` [n x
 // k].
-template <typename Left, typename Right>
-void AddLower(const Left& a, const Right& b, SeenCorners::Covariance& S) noexcept {
+template <typename Left, typename Right, typename Covariance>
+void AddLower(const Left& a, const Right& b, Covariance& S) noexcept {
   for (Eigen::Index j = 0; j < S.cols(); ++j) {
     for (Eigen::Index i = j; i < S.rows(); ++i) {
       S(i, j) += a.row(i).cwiseProduct(b.row(j)).sum();
@@ -40,16 +48,18 @@ void AddLower(const Left& a, const Right& b, SeenCorners::Covariance& S) noexcep
 // H P + by_late P_late: the covariance of the seen corners with the state. `H`: their slope over the pose,
 // `by_late`: over the stamps' common error. Two rows by two columns: each entry of H and P is loaded half as
 // often.
-Gain WithState(const CornerSlope& H, const SeenCorners::Vector& by_late,
-               const Eigen::Matrix<double, PoseFilter::kDim, PoseFilter::kDim>& P) noexcept {
-  Gain Y(H.rows(), PoseFilter::kDim);
+template <int kSize>
+typename OfCorners<kSize>::Gain WithState(const typename OfCorners<kSize>::Slope& H,
+                                          const typename OfCorners<kSize>::Vector& by_late,
+                                          const StateCovariance& P) noexcept {
+  typename OfCorners<kSize>::Gain Y;
   for (Eigen::Index j = 0; j < PoseFilter::kDim; j += 2) {
-    for (Eigen::Index i = 0; i < Y.rows(); i += 2) {
+    for (Eigen::Index i = 0; i < kSize; i += 2) {
       double sum_00 = by_late[i] * P(PoseFilter::kLate, j);
       double sum_10 = by_late[i + 1] * P(PoseFilter::kLate, j);
       double sum_01 = by_late[i] * P(PoseFilter::kLate, j + 1);
       double sum_11 = by_late[i + 1] * P(PoseFilter::kLate, j + 1);
-      for (Eigen::Index k = 0; k < H.cols(); ++k) {
+      for (Eigen::Index k = 0; k < 6; ++k) {
         sum_00 += H(i, k) * P(k, j);
         sum_10 += H(i + 1, k) * P(k, j);
         sum_01 += H(i, k) * P(k, j + 1);
@@ -66,7 +76,8 @@ Gain WithState(const CornerSlope& H, const SeenCorners::Vector& by_late,
 
 // P -= Y^T Y, and P = (P + P^T) / 2. The product is symmetric to the last bit; P is not quite. Two columns by
 // two: each entry of Y is loaded half as often.
-void Reduce(const Gain& Y, Eigen::Matrix<double, PoseFilter::kDim, PoseFilter::kDim>& P) noexcept {
+template <typename Gain>
+void Reduce(const Gain& Y, StateCovariance& P) noexcept {
   const auto subtract = [&P](Eigen::Index i, Eigen::Index j, double product) {
     P(i, j) = P(j, i) = 0.5 * ((P(i, j) - product) + (P(j, i) - product));
   };
@@ -109,22 +120,25 @@ CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexc
 // Rolling shutter: how the seen corners `xy` depend on the target's velocity and turn rate. Each is seen
 // delta after the stamp, so it has moved by delta times these. `H`: their slope over the pose; the result is
 // over velocity and turn rate.
-CornerSlope SlopeByRates(const CornerView& view, const SeenCorners::Vector& xy, CornerSlope H) noexcept {
+template <typename Vector, typename Slope>
+Slope SlopeByRates(const CornerView& view, const Vector& xy, Slope H) noexcept {
   for (Eigen::Index i = 0; i + 1 < xy.size(); i += 2) {
-    H.middleRows<2>(i) *= view.row_time * (xy[i + 1] - view.row_y);
+    H.template middleRows<2>(i) *= view.row_time * (xy[i + 1] - view.row_y);
   }
   return H;
 }
 
 // Adds the noise of the camera's own pose to the lower half of `cov`.
-void AddCameraNoise(CornerSlope by_camera, SeenCorners::Covariance& cov) noexcept {
-  by_camera.leftCols<3>() *= kCameraShiftSigma;
-  by_camera.rightCols<3>() *= kCameraTurnSigma;
+template <typename Slope, typename Covariance>
+void AddCameraNoise(Slope by_camera, Covariance& cov) noexcept {
+  by_camera.template leftCols<3>() *= kCameraShiftSigma;
+  by_camera.template rightCols<3>() *= kCameraTurnSigma;
   AddLower(by_camera, by_camera, cov);
 }
 
 // The squared distance of `innovation` in standard deviations of `S`.
-double Distance2(SeenCorners::Covariance S, SeenCorners::Vector innovation) noexcept {
+template <typename Covariance, typename Vector>
+double Distance2(Covariance S, Vector innovation) noexcept {
   model::FactorCholesky(S);
   model::SolveLower(S, innovation);
   return innovation.squaredNorm();
@@ -205,6 +219,90 @@ void AddLateness(const CornerView& view, PoseFilter& start) noexcept {
   start.P(F::kLate, F::kLate) = P_late;
 }
 
+// UpdatePose for a target with kSize / 2 corners.
+template <int kSize>
+bool Correct(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
+             PoseFilter& filter, double& distance2) noexcept {
+  using F = PoseFilter;
+  using Slope = typename OfCorners<kSize>::Slope;
+  using Vector = typename OfCorners<kSize>::Vector;
+  using Covariance = typename OfCorners<kSize>::Covariance;
+  distance2 = kNoWay;
+  PoseFilter next = filter;
+  Advance(config, hal::ToSeconds(view.stamp_ns - filter.stamp_ns), next);
+  SeenCorners::Vector xy_expected;
+  CornerSlope slope;
+  SeenCorners::Covariance bent;
+  if (!ExpectAround(polygon, view.X_CB, next.X_BO, next.P.topLeftCorner<6, 6>(), xy_expected, slope, bent)) {
+    return false;
+  }
+  SeenCorners::Vector xy;
+  SeenCorners::Covariance noise;
+  InOrder(view.seen, NearestFirst(view.seen.xy, xy_expected), xy, noise);
+  const Vector expected = xy_expected.template head<kSize>();
+  const Slope H = slope.template topRows<kSize>();
+  const Slope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO).template topRows<kSize>();
+  Covariance S = noise.template topLeftCorner<kSize, kSize>();
+  AddCameraNoise(by_camera, S);
+  const Vector by_late = -by_camera.lazyProduct(view.V_BC_C);
+  Vector innovation = xy.template head<kSize>();
+  const Slope by_rates = SlopeByRates(view, innovation, H);
+  innovation -= expected + (next.late - view.late) * by_late;
+  if (view.row_time > 0.0) {
+    innovation -=
+        by_rates.template leftCols<3>() * next.v_BO_B + by_rates.template rightCols<3>() * next.w_BO_B;
+  }
+  // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y. Of S, only the lower half
+  // is computed.
+  typename OfCorners<kSize>::Gain Y = WithState<kSize>(H, by_late, next.P);
+  if (view.row_time > 0.0) {
+    Y += by_rates.template leftCols<3>().lazyProduct(next.P.middleRows<3>(F::kVelocity));
+    Y += by_rates.template rightCols<3>().lazyProduct(next.P.middleRows<3>(F::kTurnRate));
+    AddLower(Y.template middleCols<3>(F::kVelocity), by_rates.template leftCols<3>(), S);
+    AddLower(Y.template middleCols<3>(F::kTurnRate), by_rates.template rightCols<3>(), S);
+  }
+  AddLower(Y.template leftCols<6>(), H, S);
+  AddLower(Y.col(F::kLate), by_late, S);
+  S += bent.template topLeftCorner<kSize, kSize>();
+  const double gate2 = config.gate_sigma * config.gate_sigma;
+  const Covariance S_noise = S;
+  const Vector off_by = innovation;
+  model::FactorCholesky(S);
+  model::SolveLower(S, Y);
+  model::SolveLower(S, innovation);
+  const double off = innovation.squaredNorm();
+  if (!(off < kNoWay)) {
+    return false;
+  }
+  distance2 = off;
+  if (off > gate2) {
+    const model::Mat6 doubt =
+        view.doubt != nullptr ? view.doubt->OfCamera() : model::Mat6(model::Mat6::Zero());
+    const Slope doubted = by_camera.lazyProduct(doubt);
+    const Vector bent_by_focal =
+        config.scale_sigma * ShapeByFocalLength(by_camera, xy_expected).template head<kSize>();
+    const Covariance S_doubt = S_noise + doubted.lazyProduct(by_camera.transpose()) +
+                               bent_by_focal.lazyProduct(bent_by_focal.transpose());
+    if (!(Distance2(S_doubt, off_by) <= gate2)) {
+      return false;
+    }
+  }
+  const Eigen::Matrix<double, F::kDim, 1> correction = Y.transpose().lazyProduct(innovation);
+  Reduce(Y, next.P);
+  next.X_BO.p += correction.segment<3>(F::kPosition);
+  next.X_BO.R = model::RotationOf(correction.segment<3>(F::kTurn)) * next.X_BO.R;
+  next.v_BO_B += correction.segment<3>(F::kVelocity);
+  next.a_BO_B += correction.segment<3>(F::kAcceleration);
+  next.w_BO_B += correction.segment<3>(F::kTurnRate);
+  next.late = CredibleLateness(next.late + correction[F::kLate], config.stamp_offset, config.stamp_sigma);
+  next.v_BO_B = Shortened(next.v_BO_B, config.target_speed_max);
+  next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
+  next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
+  next.stamp_ns = view.stamp_ns;
+  filter = next;
+  return true;
+}
+
 }  // namespace
 
 bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners::Branch& branch,
@@ -267,75 +365,9 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
 
 bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
                 PoseFilter& filter, double& distance2) noexcept {
-  using F = PoseFilter;
-  distance2 = kNoWay;
-  PoseFilter next = filter;
-  Advance(config, hal::ToSeconds(view.stamp_ns - filter.stamp_ns), next);
-  SeenCorners::Vector expected;
-  CornerSlope H;
-  SeenCorners::Covariance bent;
-  if (!ExpectAround(polygon, view.X_CB, next.X_BO, next.P.topLeftCorner<6, 6>(), expected, H, bent)) {
-    return false;
-  }
-  SeenCorners::Vector innovation;
-  SeenCorners::Covariance S;
-  InOrder(view.seen, NearestFirst(view.seen.xy, expected), innovation, S);
-  const CornerSlope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO);
-  AddCameraNoise(by_camera, S);
-  const SeenCorners::Vector by_late = -by_camera.lazyProduct(view.V_BC_C);
-  const CornerSlope by_rates = SlopeByRates(view, innovation, H);
-  innovation -= expected + (next.late - view.late) * by_late;
-  if (view.row_time > 0.0) {
-    innovation -= by_rates.leftCols<3>() * next.v_BO_B + by_rates.rightCols<3>() * next.w_BO_B;
-  }
-  // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y. Of S, only the lower half
-  // is computed.
-  Gain Y = WithState(H, by_late, next.P);
-  if (view.row_time > 0.0) {
-    Y += by_rates.leftCols<3>().lazyProduct(next.P.middleRows<3>(F::kVelocity));
-    Y += by_rates.rightCols<3>().lazyProduct(next.P.middleRows<3>(F::kTurnRate));
-    AddLower(Y.middleCols<3>(F::kVelocity), by_rates.leftCols<3>(), S);
-    AddLower(Y.middleCols<3>(F::kTurnRate), by_rates.rightCols<3>(), S);
-  }
-  AddLower(Y.leftCols<6>(), H, S);
-  AddLower(Y.col(F::kLate), by_late, S);
-  S += bent;
-  const double gate2 = config.gate_sigma * config.gate_sigma;
-  const SeenCorners::Covariance S_noise = S;
-  const SeenCorners::Vector off_by = innovation;
-  model::FactorCholesky(S);
-  model::SolveLower(S, Y);
-  model::SolveLower(S, innovation);
-  const double off = innovation.squaredNorm();
-  if (!(off < kNoWay)) {
-    return false;
-  }
-  distance2 = off;
-  if (off > gate2) {
-    const model::Mat6 doubt =
-        view.doubt != nullptr ? view.doubt->OfCamera() : model::Mat6(model::Mat6::Zero());
-    const CornerSlope doubted = by_camera.lazyProduct(doubt);
-    const SeenCorners::Vector bent_by_focal = config.scale_sigma * ShapeByFocalLength(by_camera, expected);
-    const SeenCorners::Covariance S_doubt = S_noise + doubted.lazyProduct(by_camera.transpose()) +
-                                            bent_by_focal.lazyProduct(bent_by_focal.transpose());
-    if (!(Distance2(S_doubt, off_by) <= gate2)) {
-      return false;
-    }
-  }
-  const Eigen::Matrix<double, F::kDim, 1> correction = Y.transpose().lazyProduct(innovation);
-  Reduce(Y, next.P);
-  next.X_BO.p += correction.segment<3>(F::kPosition);
-  next.X_BO.R = model::RotationOf(correction.segment<3>(F::kTurn)) * next.X_BO.R;
-  next.v_BO_B += correction.segment<3>(F::kVelocity);
-  next.a_BO_B += correction.segment<3>(F::kAcceleration);
-  next.w_BO_B += correction.segment<3>(F::kTurnRate);
-  next.late = CredibleLateness(next.late + correction[F::kLate], config.stamp_offset, config.stamp_sigma);
-  next.v_BO_B = Shortened(next.v_BO_B, config.target_speed_max);
-  next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
-  next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
-  next.stamp_ns = view.stamp_ns;
-  filter = next;
-  return true;
+  static_assert(Polygon::kMost == 4);
+  return polygon.num_corners == 4 ? Correct<8>(config, polygon, view, filter, distance2)
+                                  : Correct<6>(config, polygon, view, filter, distance2);
 }
 
 FlatMotion MotionAt(const config::PredictConfig& config, const PoseFilter& filter,

@@ -35,8 +35,10 @@ void ForColumns(const Vectors& x, const Solve& solve) noexcept {
       solve(c, std::integral_constant<int, 4>{});
     }
   }
-  for (; c < x.cols(); ++c) {
-    solve(c, std::integral_constant<int, 1>{});
+  if constexpr (Vectors::ColsAtCompileTime == Eigen::Dynamic || Vectors::ColsAtCompileTime % 4 != 0) {
+    for (; c < x.cols(); ++c) {
+      solve(c, std::integral_constant<int, 1>{});
+    }
   }
 }
 
