@@ -12,6 +12,7 @@
 #include <cstddef>
 
 #include "firmware/core/barriers/levers.hpp"
+#include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/model/types.hpp"
 
 namespace fovea::guard {
