@@ -67,7 +67,7 @@ double SomeGap(const Sight& sight, const SightLine& line) noexcept {
 
 // Over all links, boxes and lines of sight.
 NearSight NearestOf(const Sight& sight) noexcept {
-  constexpr double kShare = 0.9;  // of a line, from the camera, that boxes must keep clear
+  constexpr double kShare = 0.9;      // of a line, from the camera, that boxes must keep clear
   constexpr double kRounding = 1e-9;  // [m]
   NearSight nearest;
   double enough = HUGE_VAL;  // the nearest link has this gap at most

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware/core/model/rotation.hpp"
+
 namespace fovea::estimate {
 
 const JointHistory::Entry& JointHistory::FromOldest(int i) const noexcept {
@@ -68,16 +70,20 @@ bool CameraPoseAt(const JointHistory& history, const model::ArmModel& arm, const
 model::Vec6 CameraTwistAt(const JointHistory& history, const model::ArmModel& arm, const model::Pose& X_EC,
                           std::int64_t stamp_ns, const model::ArmPoses& poses) noexcept {
   constexpr std::int64_t kHalfNs = 10 * hal::kNsPerMs;
-  const std::int64_t before_ns = stamp_ns - kHalfNs;
-  const std::int64_t after_ns = std::min(stamp_ns + kHalfNs, history.newest_ns());
-  model::VecN q_before;
-  model::VecN q_after;
-  if (after_ns - before_ns < kHalfNs || !history.At(before_ns, q_before) || !history.At(after_ns, q_after)) {
-    return model::Vec6::Zero();
+  const model::Pose X_BC = poses.X_BE * X_EC;
+  model::Pose X_BC_before;
+  model::Pose X_BC_after;
+  model::Vec6 V_BC_C = model::Vec6::Zero();
+  if (CameraPoseAt(history, arm, X_EC, stamp_ns - kHalfNs, X_BC_before)) {
+    const std::int64_t after_ns = std::min(stamp_ns + kHalfNs, history.newest_ns());
+    const std::int64_t span_ns = after_ns - (stamp_ns - kHalfNs);
+    if (span_ns >= kHalfNs && CameraPoseAt(history, arm, X_EC, after_ns, X_BC_after)) {
+      const double span = hal::ToSeconds(span_ns);
+      V_BC_C.head<3>() = X_BC.R.transpose() * (X_BC_after.p - X_BC_before.p) / span;
+      V_BC_C.tail<3>() = model::RotationVector(X_BC_before.R.transpose() * X_BC_after.R) / span;
+    }
   }
-  model::Mat6N J_C;
-  model::ComputeJacobian(arm, poses, X_EC, J_C);
-  return J_C.lazyProduct((q_after - q_before) / hal::ToSeconds(after_ns - before_ns));
+  return V_BC_C;
 }
 
 }  // namespace fovea::estimate

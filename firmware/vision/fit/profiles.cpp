@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "firmware/vision/fit/shading.hpp"
+#include "firmware/vision/fit/step_table.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -18,30 +19,6 @@ constexpr int kSurelyOut = 4;         // samples at least this far outside are t
 constexpr float kShareOfAll = 0.1F;   // weight of the background's variation around the whole polygon
 constexpr float kColourNoise = 2.0F;  // least standard deviation of a background's colour [gray levels]
 
-// Table of the step 1 - Phi(x) and its density, for speed.
-class StepTable {
- public:
-  StepTable() {
-    for (int i = 0; i < kSize; ++i) {
-      const double x = -kReach + 2.0 * kReach * i / (kSize - 1);
-      step_[static_cast<std::size_t>(i)] = 0.5 * std::erfc(x / std::sqrt(2.0));
-      density_[static_cast<std::size_t>(i)] = 0.3989422804014327 * std::exp(-0.5 * x * x);
-    }
-  }
-  void At(double x, double& step, double& density) const {
-    const double place = std::clamp((x + kReach) * ((kSize - 1) / (2.0 * kReach)), 0.0, kSize - 1.001);
-    const auto i = static_cast<std::size_t>(place);
-    const double a = place - static_cast<double>(i);
-    step = step_[i] + a * (step_[i + 1] - step_[i]);
-    density = density_[i] + a * (density_[i + 1] - density_[i]);
-  }
-
- private:
-  static constexpr double kReach = 5.0;
-  static constexpr int kSize = 1001;
-  std::array<double, kSize> step_;
-  std::array<double, kSize> density_;
-};
 const StepTable kStep;
 
 // Four samples at a time, in a fixed order: the sums are equal on every machine.
