@@ -18,10 +18,10 @@ namespace {
 constexpr double kLeastVariance = 1e-16;  // of a pose, so that rounding leaves it positive [m^2, rad^2]
 
 // The corners p + turn * arm, in axes of the camera, in its normalised image. False if one is not in front.
-bool SeeCorners(int num_corners, const Vec3& p, const Mat3& turn,
-                const std::array<Vec3, Polygon::kMost>& arms, SeenCorners::Vector& xy) noexcept {
-  xy.resize(2 * num_corners);
-  for (int i = 0; i < num_corners; ++i) {
+template <int kCorners>
+bool SeeCorners(const Vec3& p, const Mat3& turn, const std::array<Vec3, Polygon::kMost>& arms,
+                Eigen::Matrix<double, 2 * kCorners, 1>& xy) noexcept {
+  for (int i = 0; i < kCorners; ++i) {
     const Vec3 p_C = p + turn.lazyProduct(arms[static_cast<std::size_t>(i)]);
     if (!(p_C.z() >= features::kMinDepth)) {
       return false;
@@ -29,6 +29,55 @@ bool SeeCorners(int num_corners, const Vec3& p, const Mat3& turn,
     xy[2 * i] = p_C.x() / p_C.z();
     xy[2 * i + 1] = p_C.y() / p_C.z();
   }
+  return true;
+}
+
+// ExpectAround for so many corners: sizes that the compiler knows save work.
+template <int kCorners>
+bool ExpectWith(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
+                const model::Mat6& P, SeenCorners::Vector& mean, CornerSlope& H,
+                SeenCorners::Covariance& bent) noexcept {
+  constexpr double kFar = 2.449489742783178;  // sqrt(6)
+  constexpr int kSize = 2 * kCorners;
+  model::Mat6 L = P;
+  L.diagonal().array() += kLeastVariance;
+  model::FactorCholesky(L);
+  L.triangularView<Eigen::StrictlyUpper>().setZero();
+  // In axes of the camera: O, and the corners from there.
+  const Vec3 p_CO = X_CB * X_BO.p;
+  std::array<Vec3, Polygon::kMost> arms;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(kCorners); ++k) {
+    arms[k] = X_CB.R.lazyProduct(X_BO.R.lazyProduct(polygon.corners[k]));
+  }
+  std::array<Eigen::Matrix<double, kSize, 1>, 12> at;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const model::Vec6 off = kFar * L.col(static_cast<Eigen::Index>(i));
+    const Vec3 shift = X_CB.R.lazyProduct(off.head<3>());
+    const Mat3 turn = model::RotationOf(X_CB.R.lazyProduct(off.tail<3>()));
+    if (!SeeCorners<kCorners>(p_CO + shift, turn, arms, at[i]) ||
+        !SeeCorners<kCorners>(p_CO - shift, turn.transpose(), arms, at[i + 6])) {
+      return false;
+    }
+  }
+  Eigen::Matrix<double, kSize, 1> centre = Eigen::Matrix<double, kSize, 1>::Zero();
+  for (const auto& corners : at) {
+    centre += corners / 12.0;
+  }
+  Eigen::Matrix<double, 6, kSize> turned;
+  Eigen::Matrix<double, kSize, kSize> bows = Eigen::Matrix<double, kSize, kSize>::Zero();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Eigen::Matrix<double, kSize, 1> bow = 0.5 * (at[i] + at[i + 6]) - centre;
+    turned.row(static_cast<Eigen::Index>(i)) = ((at[i] - at[i + 6]) / (2.0 * kFar)).transpose();
+    for (Eigen::Index c = 0; c < kSize; ++c) {
+      for (Eigen::Index r = c; r < kSize; ++r) {
+        bows(r, c) += bow[r] * bow[c] / 6.0;
+      }
+    }
+  }
+  model::SolveLowerTransposed(L, turned);
+  mean = centre;
+  H = turned.transpose();
+  bent = bows;
   return true;
 }
 
@@ -50,48 +99,8 @@ bool ExpectCorners(const Polygon& polygon, const model::Pose& X_CB, const model:
 bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
                   const model::Mat6& P, SeenCorners::Vector& mean, CornerSlope& H,
                   SeenCorners::Covariance& bent) noexcept {
-  constexpr double kFar = 2.449489742783178;  // sqrt(6)
-  const int size = 2 * polygon.num_corners;
-  model::Mat6 L = P;
-  L.diagonal().array() += kLeastVariance;
-  model::FactorCholesky(L);
-  L.triangularView<Eigen::StrictlyUpper>().setZero();
-  // In axes of the camera: O, and the corners from there.
-  const Vec3 p_CO = X_CB * X_BO.p;
-  std::array<Vec3, Polygon::kMost> arms;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.num_corners); ++k) {
-    arms[k] = X_CB.R.lazyProduct(X_BO.R.lazyProduct(polygon.corners[k]));
-  }
-  std::array<SeenCorners::Vector, 12> at;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const model::Vec6 off = kFar * L.col(static_cast<Eigen::Index>(i));
-    const Vec3 shift = X_CB.R.lazyProduct(off.head<3>());
-    const Mat3 turn = model::RotationOf(X_CB.R.lazyProduct(off.tail<3>()));
-    if (!SeeCorners(polygon.num_corners, p_CO + shift, turn, arms, at[i]) ||
-        !SeeCorners(polygon.num_corners, p_CO - shift, turn.transpose(), arms, at[i + 6])) {
-      return false;
-    }
-  }
-  mean.setZero(size);
-  for (const SeenCorners::Vector& corners : at) {
-    mean += corners / 12.0;
-  }
-  H.resize(size, 6);
-  bent.setZero(size, size);
-  for (std::size_t i = 0; i < 6; ++i) {
-    const SeenCorners::Vector slope = (at[i] - at[i + 6]) / (2.0 * kFar);
-    const SeenCorners::Vector bow = 0.5 * (at[i] + at[i + 6]) - mean;
-    H.col(static_cast<Eigen::Index>(i)) = slope;
-    for (Eigen::Index c = 0; c < size; ++c) {
-      for (Eigen::Index r = c; r < size; ++r) {
-        bent(r, c) += bow[r] * bow[c] / 6.0;
-      }
-    }
-  }
-  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 2 * Polygon::kMost> turned = H.transpose();
-  model::SolveLowerTransposed(L, turned);
-  H = turned.transpose();
-  return true;
+  return polygon.num_corners == 4 ? ExpectWith<4>(polygon, X_CB, X_BO, P, mean, H, bent)
+                                  : ExpectWith<3>(polygon, X_CB, X_BO, P, mean, H, bent);
 }
 
 void SlopeOfCorners(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,

@@ -246,7 +246,10 @@ bool Correct(const config::PredictConfig& config, const Polygon& polygon, const 
   AddCameraNoise(by_camera, S);
   const Vector by_late = -by_camera.lazyProduct(view.V_BC_C);
   Vector innovation = xy.template head<kSize>();
-  const Slope by_rates = SlopeByRates(view, innovation, H);
+  Slope by_rates;
+  if (view.row_time > 0.0) {
+    by_rates = SlopeByRates(view, innovation, H);
+  }
   innovation -= expected + (next.late - view.late) * by_late;
   if (view.row_time > 0.0) {
     innovation -=
