@@ -212,12 +212,16 @@ class Bounds {
  private:
   [[nodiscard]] double ValueNow(int i) noexcept {
     const model::ArmPoses& poses = now_.Get();
-    return solid_.ValueOf(i, poses, barriers::PlaceBodies(arm_, poses));
+    if (!bodies_now_) {
+      bodies_now_ = barriers::PlaceBodies(arm_, poses);
+    }
+    return solid_.ValueOf(i, poses, *bodies_now_);
   }
 
   const model::ArmModel& arm_;
   barriers::SolidBarriers solid_;
   model::LazyPoses& now_;
+  std::optional<barriers::ArmBodies> bodies_now_;
   KnownClearances& known_;
 };
 
@@ -244,8 +248,11 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
 
   // Arm and hand. The bounds are looked at only where no known posture is near enough, and the hand's speeds
   // only while they could exceed their limits.
-  const KnownClearances::Posture& nearby = known.last();
-  const bool are_clear = nearby.clearance > 0.0 && way.FurthestFrom(nearby.q, q_end) <= nearby.clearance;
+  const auto is_clear = [&] {
+    const KnownClearances::Posture& nearby = known.last();
+    return nearby.clearance > 0.0 && way.FurthestFrom(nearby.q, q_end) <= nearby.clearance;
+  };
+  bool are_clear = is_clear() || way.FurthestFrom(q_now, q_end) < kSlack;  // or the arm rests
   const double speed_most = config::kSpeedShareMost * config::SpeedLimitOfReference(guard);
   const double turn_most = config::kTurnShareMost * config::TurnLimitOfReference(guard);
   const auto is_slow = [&](const StopWay::Most& most) {
@@ -286,6 +293,8 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
         return passed;
       }
     }
+    // A posture that covers the first place often covers all of a slow stop.
+    are_clear = are_clear || (sample == 0 && is_clear());
   }
   return 0;
 }
