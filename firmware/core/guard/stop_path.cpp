@@ -205,7 +205,9 @@ class Bounds {
       }
       clearance = std::min(clearance, room);
     }
-    known_.Add(q, clearance);
+    if (clearance > 0.0) {  // else it would only take the place of a posture that is of use
+      known_.Add(q, clearance);
+    }
     return 0;
   }
 

@@ -198,8 +198,8 @@ TEST(LimitsPassedTest, KnownClearancesChangeNoVerdict) {
   }
   std::cout << num_passed << " of " << num_cases << " exceed a bound, " << num_looks << " leave more\n";
   EXPECT_GT(num_passed, num_cases / 20);
-  EXPECT_LT(num_passed, num_cases / 2);
-  EXPECT_LT(num_looks, num_cases / 2);
+  EXPECT_LT(num_passed, num_cases / 8);
+  EXPECT_LT(num_looks, num_cases / 5);
 }
 
 }  // namespace
