@@ -27,15 +27,15 @@ constexpr double kLongestStep = 0.3;        // of a step [rad, m]
 constexpr double kSlowJoint = 0.02;         // the lag of slower joints is not known [rad/s, m/s]
 constexpr double kLagMost = 0.1;            // of the arm behind its reference [s]
 // Weights beside the features' squared errors.
-constexpr double kOfFree = 0.01;           // of the velocities that the feature leaves free [s^2]
-constexpr double kFreeBelow = 1e-6;        // squared singular values of de/dq that leave a direction free
-constexpr double kOfAcceleration = 1e-5;   // [s^4]
-constexpr double kLeastGain = 0.01;        // [1/s]
+constexpr double kOfFree = 0.01;            // of the velocities that the feature leaves free [s^2]
+constexpr double kFreeBelow = 1e-6;         // squared singular values of de/dq that leave a direction free
+constexpr double kOfAcceleration = 1e-5;    // [s^4]
+constexpr double kLeastGain = 0.01;         // [1/s]
 constexpr double kPenaltyOfMotion = 100.0;  // of the joints' limits, beside 1 of barriers
-constexpr double kReturn = 0.1;            // of a barrier that is past its margin, per second
-constexpr double kNearSolid = 0.15;        // a barrier farther away has no row [m]
-constexpr int kWorkOfKnot = 4;             // postures that a linearised knot counts for
-constexpr int kWorkOfProgram = 200;        // a quadratic program
+constexpr double kReturn = 0.1;             // of a barrier that is past its margin, per second
+constexpr double kNearSolid = 0.15;         // a barrier farther away has no row [m]
+constexpr int kWorkOfKnot = 4;              // postures that a linearised knot counts for
+constexpr int kWorkOfProgram = 200;         // a quadratic program
 constexpr int kRowsOfKnot = 4 + barriers::SolidBarriers::kMost;
 
 // Shares of the control points `knot`, `knot` + 1, `knot` + 2 in the joints at a knot.
