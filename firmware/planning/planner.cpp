@@ -28,6 +28,9 @@ constexpr double kGoalShare = 0.2;  // of the budget, after which a search for g
 // time.
 constexpr double kFirstSlice = 6000.0;
 constexpr double kMoreEachRound = 1.5;
+// Of the budget, after which a search that found no way keeps less room before lines of sight and steep
+// views.
+constexpr double kStrictShare = 0.25;
 constexpr int kShortenWork = 4000;  // at most, for making a path shorter
 // If the path is this much longer than straight to the nearest goal, the search goes on for a quicker motion,
 // for this much work for each second of the motion found: a twentieth of that time with 2.5 us for a posture.
@@ -40,6 +43,10 @@ constexpr int kMostPoints = 64;
 constexpr int kSweeps = 12;    // of straightening
 constexpr int kSlowings = 24;  // of a motion that the guard would slow down
 constexpr double kSlower = 0.85;
+
+double Spent(const PlanRequest& request, const Work& work) noexcept {
+  return static_cast<double>(request.budget - work.left());
+}
 
 bool IsOffWhole(const PlanRequest& request) noexcept {
   return request.kind == PlanRequest::Kind::kPlan ||
@@ -166,8 +173,7 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
   int motions = 0;
   bool seek_goals = true;
   const auto is_enough = [&] {
-    const auto spent = static_cast<double>(request.budget - work.left());
-    return motions >= kMostMotions || spent > kWorkOfSecond * least;
+    return motions >= kMostMotions || Spent(request, work) > kWorkOfSecond * least;
   };
   while (work.IsLeft() && !is_enough()) {
     if (seek_goals) {
@@ -189,6 +195,10 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
     if (!FindPath(request.start.q, motions == 0, static_cast<std::int64_t>(slice), work, draws, found.turn)) {
       outcome = outcome == PlanOutcome::kNotProved ? outcome : PlanOutcome::kNoPath;
       slice *= kMoreEachRound;
+      if (Spent(request, work) > kStrictShare * static_cast<double>(request.budget)) {
+        space.AllowLessSight();  // a narrow passage is better than none
+        space.AllowSteeperViews();
+      }
       continue;
     }
     const bool is_roundabout = IsRoundabout(request.start.q);

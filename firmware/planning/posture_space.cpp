@@ -28,10 +28,11 @@ constexpr double kTiltRoom = 0.02;   // before a disc's largest tilt, cosine
 constexpr double kJointRoom = 0.02;  // before the ends of a joint's range [rad, m]
 constexpr double kGoalJointRoom = 0.06;   // the same at the goal
 constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular value
-// Smallest cosine between a flat target's normal and the line of sight: at a start that is planned from, and
-// on the way, unless the start has less. The detector loses a square at 0.25 to 0.2.
+// Smallest cosine between a flat target's normal and the line of sight: at a start that is planned from, on
+// the way, unless the start has less, and on the way if there is no other.
 constexpr double kEdgeOn = 0.1;
 constexpr double kSteepest = 0.35;
+constexpr double kLeastSteepest = 0.2;
 constexpr double kFacingRoom = 0.01;    // of this cosine, for a start that has less
 constexpr double kReachRoom = 0.05;     // share of the detector's distances that a path keeps
 constexpr double kNearestPoint = 0.05;  // of the target's points [m]
@@ -136,6 +137,8 @@ bool PostureSpace::AllowLessSight() noexcept {
   return is_less;
 }
 
+void PostureSpace::AllowSteeperViews() noexcept { steepest_ = std::min(steepest_, kLeastSteepest); }
+
 void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) const noexcept {
   work.Spend();
   posture.q = q;
@@ -168,9 +171,13 @@ double PostureSpace::PictureRoom(const Posture& posture) const noexcept {
   return least - NeededRoom(posture.q);
 }
 
-double PostureSpace::NeededRoom(const model::VecN& q) const noexcept {
+double PostureSpace::RoomAt(const model::VecN& q, double at_start, double at_last) const noexcept {
   const double share = std::min(Distance(q, q_start_) / kInward, 1.0);
-  return start_room_ + share * (kPictureRoom - start_room_);
+  return at_start + share * (at_last - at_start);
+}
+
+double PostureSpace::NeededRoom(const model::VecN& q) const noexcept {
+  return RoomAt(q, start_room_, kPictureRoom);
 }
 
 barriers::Sight PostureSpace::SightAt(const Posture& posture,
@@ -199,7 +206,7 @@ PostureSpace::Verdict PostureSpace::Judge(const Posture& posture, double share) 
   verdict.blocker = hal::Limit::kFieldOfView;
   const double picture_room = NeededRoom(posture.q);
   if (!posture.is_faced || !(PictureRoom(posture) + picture_room >= needed(picture_room)) ||
-      !(Tilt(posture) >= needed(tilt_room_))) {
+      !(Tilt(posture) >= needed(RoomAt(posture.q, tilt_room_, kTiltRoom)))) {
     return verdict;
   }
   const barriers::ArmBodies bodies = barriers::PlaceBodies(config_.arm, posture.poses);

@@ -56,6 +56,8 @@ class PostureSpace {
 
   // From here to the next Begin, lines of sight need less room. False if they already do.
   bool AllowLessSight() noexcept;
+  // From here to the next Begin, a flat target may be seen from a steeper side.
+  void AllowSteeperViews() noexcept;
 
   // The posture at `q`; spends one unit of work. Joint ranges are not checked here.
   void Place(const model::VecN& q, Work& work, Posture& posture) const noexcept;
@@ -100,6 +102,8 @@ class PostureSpace {
   // Cosine between a flat target's normal and the line of sight.
   [[nodiscard]] static double CosineTo(const Posture& posture) noexcept;
   [[nodiscard]] double Tilt(const Posture& posture) const noexcept;
+  // A room before a bound that grows from `at_start` there to `at_last`.
+  [[nodiscard]] double RoomAt(const model::VecN& q, double at_start, double at_last) const noexcept;
   // Before the edges of the picture, normalised.
   [[nodiscard]] double NeededRoom(const model::VecN& q) const noexcept;
   [[nodiscard]] barriers::Sight SightAt(const Posture& posture,
@@ -121,7 +125,7 @@ class PostureSpace {
   model::VecN q_start_;
   double start_room_ = 0.0;  // before the picture's edges at the start, normalised
   double sight_room_ = 0.0;  // [m]
-  double tilt_room_ = 0.0;   // cosine
+  double tilt_room_ = 0.0;   // at the start, cosine
   Range range_;
   Range goal_range_;
   model::Pose X_BO_;

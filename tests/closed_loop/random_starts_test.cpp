@@ -39,6 +39,41 @@ INSTANTIATE_TEST_SUITE_P(
                                 "target.position=[0.2598,-0.575,0.5328]",
                                 "target.rpy_deg=[85.14,33.95,69.31]", "run.seed=1906482257"}));
 
+// Starts with a way that a plan or the law before it missed.
+struct Hard {
+  const char* name;
+  const char* target;
+  Assignments start;
+};
+void PrintTo(const Hard& hard, std::ostream* out) { *out << hard.name; }
+
+class HardStart : public testing::TestWithParam<Hard> {};
+
+TEST_P(HardStart, IsReached) { ExpectReached(RunShipped(GetParam().target, kTable + GetParam().start)); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Runs, HardStart,
+    testing::Values(
+        // The plan crawled along the disc's largest tilt.
+        Hard{"DiscAtItsLargestTilt",
+             "circle",
+             {"arm.q_start=[-2.6007,-1.2893,-0.5316,-2.6238,-2.1265,0.3195,-1.0821]",
+              "target.position=[0.3711,0.8822,0.6342]", "target.rpy_deg=[171.57,41.66,-175.75]",
+              "run.seed=1704091392"}},
+        // The only way passes nearer to the lines of sight than a plan likes.
+        Hard{"NarrowPassage",
+             "triangle",
+             {"arm.q_start=[-2.4627,0.185,-1.5858,-2.0503,-0.56,0.5545,2.6997]",
+              "target.position=[0.0584,0.1418,0.5073]", "target.rpy_deg=[-89.46,16.9,-122.83]",
+              "run.seed=981323308"}},
+        // The arm's stop before a plan, from a fast joint of a slow law, lost the target.
+        Hard{"FastJointOfASlowLaw",
+             "triangle",
+             {"arm.q_start=[0.5554,0.2702,-1.4411,-2.7501,-1.0992,1.7317,-1.6703]",
+              "target.position=[-0.8643,-0.1878,0.3567]", "target.rpy_deg=[79.97,-36.57,-30.4]",
+              "run.seed=1475456643"}}),
+    [](const auto& hard) { return std::string(hard.param.name); });
+
 // Without plans: the pull towards the posture turned the disc edge-on, where the detector cannot find it.
 TEST(RandomStarts, PosturePullDoesNotTurnTheDiscEdgeOn) {
   const Assignments start =

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <random>
+#include <vector>
 
 #include "firmware/core/features/triangle.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
+#include "firmware/vision/fit/polygon_fit.hpp"
 #include "firmware/vision/pose/flat_corners.hpp"
 #include "tools/bench/vision/picture.hpp"
 #include "tools/bench/vision/scenes.hpp"
@@ -215,6 +218,52 @@ TEST(FlatDetectorTest, TrianglePosesOutOfReachAreDropped) {
   std::cout << "nearest pose of the triangle in reach is off by " << nearest_deg << " deg\n";
   EXPECT_LT(nearest_deg, 0.3);
   EXPECT_FALSE(poses_within(0.3).found);
+}
+
+// A wall whose edge runs beside a side of a red square, lighter or darker than the ground: the target's
+// colour tells its side from the border of two grays, which would pull the side towards it.
+TEST(FlatDetectorTest, BorderOfTwoGroundsBesideASideDoesNotShiftIt) {
+  constexpr double kFar = 0.5;   // of the square, which faces the camera [m]
+  constexpr double kWall = 0.8;  // of the wall [m]
+  const DetectorConfig config = ConfigOf(hal::FeatureKind::kSquare);
+  double most_px = 0.0;
+  for (const double wall : {60.0, 180.0}) {
+    for (const double beside_px : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
+      const model::Pose X_CO{Mat3::Identity(), {0.0, 0.0, kFar}};
+      bench::PictureScene scene = SceneOf(config, X_CO, 2.0, 7);
+      const bench::PictureCamera& camera = scene.camera;
+      scene.gray = false;
+      scene.ground_bgr.setConstant(120.0);
+      scene.bodies.front().bgr = {50.0, 50.0, 190.0};
+      const std::vector<Eigen::Vector2d> corners = FlatCorners(config.corners);
+      double right = 0.0;
+      for (const Eigen::Vector2d& corner : corners) {
+        right = std::max(right, corner.x());
+      }
+      const double edge = kWall * (right / kFar + beside_px / camera.f_px);
+      bench::Body body;
+      body.shape = bench::Shape::kPolygon;
+      body.p = Vec3(0.0, 0.0, kWall);
+      body.corners = {{edge, -2.0}, {edge + 2.0, -2.0}, {edge + 2.0, 2.0}, {edge, 2.0}};
+      body.bgr.setConstant(wall);
+      scene.bodies.push_back(body);
+      std::vector<ImagePoint> start;
+      start.reserve(corners.size());
+      for (const Eigen::Vector2d& corner : corners) {
+        start.push_back({camera.c_u_px + camera.f_px / kFar * corner.x(),
+                         camera.c_v_px + camera.f_px / kFar * corner.y()});
+      }
+      PolygonFitter fitter(config.edge_noise, true);
+      const PolygonFit fit = fitter.Fit(Draw(scene), config.intrinsics, start);
+      ASSERT_TRUE(fit.converged) << beside_px << " px beside";
+      for (std::size_t k = 0; k < start.size(); ++k) {
+        most_px = std::max(most_px, std::hypot(fit.corners.corner[k].u_px - start[k].u_px,
+                                               fit.corners.corner[k].v_px - start[k].v_px));
+      }
+    }
+  }
+  std::cout << "corners at most " << most_px << " px off\n";
+  EXPECT_LT(most_px, 0.2);
 }
 
 }  // namespace

@@ -25,9 +25,20 @@ double ShareOfWish(double sigma, double sigma_min) noexcept {
   return std::clamp((sigma / sigma_min - 1.0) / kWishFades, 0.0, 1.0);
 }
 
+double SpeedOf(const config::ServoConfig& config, int joint) noexcept {
+  return config.guard.joint_velocity_fraction * config.arm.joints[static_cast<std::size_t>(joint)].dq_max;
+}
+
 void Gather(const config::ServoConfig& config, const MotionScene& scene, barriers::SingularityWatch& watch,
             barriers::MotionLimits& limits, double& wish) noexcept {
   barriers::LimitJoints(config, scene.reference.q, limits);
+  if (scene.speed_share < 1.0) {
+    for (int i = 0; i < config.arm.num_joints; ++i) {
+      const double most = scene.speed_share * SpeedOf(config, i);
+      limits.dq_max[i] = std::min(limits.dq_max[i], most);
+      limits.dq_min[i] = std::max(limits.dq_min[i], -most);
+    }
+  }
   const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, scene.poses);
   const barriers::SolidBarriers solid(config);
   for (int i = 0; i < solid.size(); ++i) {
@@ -67,8 +78,7 @@ LimitSet LimitsThatAct(const config::ServoConfig& config, const barriers::Motion
                        const LimitedMotion& motion) noexcept {
   LimitSet active = 0;
   for (int i = 0; i < config.arm.num_joints; ++i) {
-    const double speed =
-        config.guard.joint_velocity_fraction * config.arm.joints[static_cast<std::size_t>(i)].dq_max;
+    const double speed = SpeedOf(config, i);
     const bool up = ((motion.upper >> i) & 1U) != 0;
     const bool down = ((motion.lower >> i) & 1U) != 0;
     if (up || down) {

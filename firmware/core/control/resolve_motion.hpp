@@ -28,6 +28,7 @@ struct MotionScene {
   const barriers::ViewedTarget* target = nullptr;  // to keep in view and in sight; null: none
   // The task is the joints' own motion (J = I, dq_0 = 0, weight 1). The hand's singularities do not limit it.
   bool by_joints = false;
+  double speed_share = 1.0;  // of each joint's largest speed, 0 to 1
 };
 
 struct ResolvedMotion {

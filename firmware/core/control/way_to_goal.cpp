@@ -249,6 +249,11 @@ bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept
   return sight.v_BO.norm() + turn > kMovingTarget;
 }
 
+bool IsSamePlace(const model::Pose& a, const model::Pose& b) noexcept {
+  return (a.p - b.p).norm() < kElsewhereM &&
+         model::RotationVector(a.R * b.R.transpose()).norm() < kElsewhereRad;
+}
+
 bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight, const Plan& plan) noexcept {
   const double turn = GoalTwist(config, sight, plan, model::Pose{}).tail<3>().norm();
   return !((sight.X_BO.p - PlaceOf(plan)).norm() < kElsewhereM) || !(turn < kElsewhereRad);

@@ -75,7 +75,7 @@ struct WaySight {
   const trajectory::Reference& reference;
   hal::LimitSet limits = 0;  // active in the previous tick
   std::int64_t now_ns = 0;
-  bool is_told_apart = false;     // only one of the poses that fit the corners is left
+  bool is_told_apart = false;     // a plan for the believed pose suits all poses that fit the corners
   bool has_answer = false;        // the plan that was asked for is there
   bool is_seen = false;           // the target, at present
   bool is_eye_trusted = false;    // the picture has gone with the hand's motion since Track began
@@ -106,6 +106,9 @@ void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& refer
 
 // True if the last plan's end, `q_end`, is a good posture for a target at `p_BO` [m]. Real-time: yes.
 [[nodiscard]] bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept;
+
+// True if a plan for a target at one of these poses, in the same frame, suits the other too. Real-time: yes.
+[[nodiscard]] bool IsSamePlace(const model::Pose& a, const model::Pose& b) noexcept;
 
 // True if the target is not where `plan` takes it to be. Real-time: yes.
 [[nodiscard]] bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight,

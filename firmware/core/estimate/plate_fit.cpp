@@ -60,8 +60,12 @@ void Average(const PlateView& newest, PlateView& mean) noexcept {
 
 }  // namespace
 
-PlateView SeePlate(const CornerView& view) noexcept {
-  const double variance = view.seen.cov.trace() / static_cast<double>(view.seen.xy.size());
+PlateView SeePlate(const Polygon& polygon, const CornerView& view, const model::Pose& X_BO,
+                   double late_sigma) noexcept {
+  const SeenCorners::Vector by_late =
+      late_sigma * SlopeByCamera(polygon, view.X_CB * X_BO).lazyProduct(view.V_BC_C);
+  const double variance =
+      (view.seen.cov.trace() + by_late.squaredNorm()) / static_cast<double>(view.seen.xy.size());
   return {view.X_CB, view.seen.xy, variance, 1};
 }
 

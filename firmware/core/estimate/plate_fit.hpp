@@ -25,8 +25,10 @@ struct PlateView {
   return (a.X_CB.Inverse().p - b.X_CB.Inverse().p).norm();
 }
 
-// The view of one frame. Real-time: yes.
-[[nodiscard]] PlateView SeePlate(const CornerView& view) noexcept;
+// The view of one frame, of a target believed at `X_BO`. If the camera moved, the corners are less sure by
+// `late_sigma` [s], the standard deviation of the frame's age. Real-time: yes.
+[[nodiscard]] PlateView SeePlate(const features::Polygon& polygon, const CornerView& view,
+                                 const model::Pose& X_BO, double late_sigma) noexcept;
 
 // Adds `newest`, a single frame, to the mean of the frames from the camera's present place. Restarts the mean
 // if the camera has moved. Real-time: yes.

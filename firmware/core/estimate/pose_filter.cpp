@@ -103,20 +103,6 @@ void Reduce(const Gain& Y, StateCovariance& P) noexcept {
   }
 }
 
-// The derivative of the corners by the camera's twist in C; zero if a corner is not in front of the camera.
-CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexcept {
-  CornerSlope by_camera(2 * polygon.num_corners, 6);
-  for (int i = 0; i < polygon.num_corners; ++i) {
-    features::ImagePoint point;
-    if (!features::ComputePoint(X_CO * polygon.corners[static_cast<std::size_t>(i)], Vec3::Zero(), point)) {
-      by_camera.setZero();
-      break;
-    }
-    by_camera.middleRows<2>(2 * i) = point.L;
-  }
-  return by_camera;
-}
-
 // Rolling shutter: how the seen corners `xy` depend on the target's velocity and turn rate. Each is seen
 // delta after the stamp, so it has moved by delta times these. `H`: their slope over the pose; the result is
 // over velocity and turn rate.

@@ -61,7 +61,7 @@ bool Start(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypot
   if (start.plate.count == 0) {
     return false;
   }
-  start.plate_mean = SeePlate(view);
+  start.plate_mean = SeePlate(polygon, view, start.plate.best().filter.X_BO, view.late_sigma);
   start.plate.views.Keep(start.plate_mean);
   start.accepted = 1;
   start.stamp_ns = view.stamp_ns;
@@ -88,11 +88,13 @@ void CatchSlip(const Polygon& polygon, const CornerView& view, PoseHypotheses& h
   hypotheses.slipped = false;
 }
 
-void BeginComparison(const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+void BeginComparison(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+  const PoseFilter& filter = hypotheses.plate.best().filter;
   PlateComparison& comparison = hypotheses.comparison;
   comparison = PlateComparison{};
   comparison.runs = true;
-  comparison.newest = SeePlate(view);
+  comparison.newest = SeePlate(polygon, view, filter.X_BO,
+                               std::sqrt(std::max(filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0)));
   TakeIntoMean(comparison.newest, hypotheses.plate_mean);
   hypotheses.plate.views.Keep(comparison.newest);
 }
@@ -186,7 +188,7 @@ Verdict TakeView(const config::PredictConfig& config, const Polygon& polygon, co
   }
   CatchSlip(polygon, view, hypotheses);
   if (!hypotheses.comparison.runs) {
-    BeginComparison(view, hypotheses);
+    BeginComparison(polygon, view, hypotheses);
   }
   hypotheses.stamp_ns = view.stamp_ns;
   hypotheses.rejected_in_row = 0;

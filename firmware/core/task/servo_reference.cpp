@@ -38,6 +38,15 @@ model::VecN SoundRates(const config::ServoConfig& config, const model::VecN& dq,
   return sound;
 }
 
+// True if a plan for the believed pose suits all of a flat target's poses that are left.
+bool IsToldApart(const estimate::PoseHypotheses& hypotheses) noexcept {
+  const auto& plate = hypotheses.plate;
+  return std::all_of(plate.all.begin(), plate.all.begin() + plate.count,
+                     [&](const estimate::PlatePose& pose) {
+                       return control::IsSamePlace(pose.X_BO_still, plate.best().X_BO_still);
+                     });
+}
+
 // The planner knows the gains that the servo began with. With others, the law goes on alone.
 bool HasTunedGain(const TuningState& tuning) noexcept {
   constexpr std::array<std::size_t, 3> kGains{0, 1, 2};  // servo.lambda, lambda_near, lambda_slope
@@ -96,7 +105,7 @@ void ServoTask::ChooseTheWay() noexcept {
       .reference = state_.reference,
       .limits = state_.limits,
       .now_ns = state_.now_ns,
-      .is_told_apart = !config_.feature.SeesOrientation() || state_.predict.hypotheses.plate.count == 1,
+      .is_told_apart = IsToldApart(state_.predict.hypotheses),
       .has_answer = state_.plans.IsWhole() && state_.plans.plan().stamp_ns == state_.way.asked_ns,
       .is_seen = state_.mode.mode == hal::Mode::kTrack,
       .is_eye_trusted = state_.eye.IsTrusted(),
@@ -189,13 +198,14 @@ bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
   const bool ahead = IsPlanned();
   const bool accelerates = control::LineOf(config_.law.law).commands_acceleration;
+  double share = 1.0;  // of the joints' speed: a stop from less moves the target less in the picture
   if (!ahead && !accelerates) {
+    share = slowing > 0.0 ? slowing : state_.way.pace;
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s =
         static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
-    const double blend = slowing > 0.0
-                             ? slowing
-                             : state_.way.pace * trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
+    const double blend =
+        slowing > 0.0 ? slowing : share * trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
   }
@@ -205,7 +215,7 @@ bool ServoTask::ResolveWish(double slowing, guard::MotionWish& wish) noexcept {
     target.normal_C = state_.X_BC.R.transpose() * disc.best().normal_B;
   }
   control::ResolveMotion(config_, ahead ? state_.plan_step.task : state_.law.task,
-                         {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, planned},
+                         {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, planned, share},
                          state_.resolved);
   if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
     return false;

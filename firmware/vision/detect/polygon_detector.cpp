@@ -129,7 +129,10 @@ void PolygonDetector::Judge(const Picture& image, const PolygonCandidate& start,
   d.rms_px = fit.rms_px;
   d.contrast = fit.contrast;
   d.seen = fit.seen;
-  SetCorners(fit.corners, pose.first, d);
+  // Sides that a border beside the target has shifted fit no pose: the misfit shows their error.
+  CornerFit honest = fit.corners;
+  honest.cov *= pose.misfit;
+  SetCorners(honest, pose.first, d);
   for (const CornerPose& p : poses) {
     const int first = (p.first - pose.first + static_cast<int>(n)) % static_cast<int>(n);
     d.pose[static_cast<std::size_t>(d.pose_count++)] = {p.X_CO, first};

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/fit/profiles.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "firmware/vision/fit/shading.hpp"
+#include "firmware/vision/fit/step_table.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -13,31 +15,10 @@ namespace {
 constexpr double kMinContrast = 4.0;  // least step of an edge [gray levels]
 constexpr double kStartNoise = 2.0;   // [gray levels], until it is measured
 constexpr int kClear = 2;             // samples nearer to the edge than this belong to neither side
+constexpr int kSurelyOut = 4;         // samples at least this far outside are the background's
+constexpr float kShareOfAll = 0.1F;   // weight of the background's variation around the whole polygon
+constexpr float kColourNoise = 2.0F;  // least standard deviation of a background's colour [gray levels]
 
-// Table of the step 1 - Phi(x) and its density, for speed.
-class StepTable {
- public:
-  StepTable() {
-    for (int i = 0; i < kSize; ++i) {
-      const double x = -kReach + 2.0 * kReach * i / (kSize - 1);
-      step_[static_cast<std::size_t>(i)] = 0.5 * std::erfc(x / std::sqrt(2.0));
-      density_[static_cast<std::size_t>(i)] = 0.3989422804014327 * std::exp(-0.5 * x * x);
-    }
-  }
-  void At(double x, double& step, double& density) const {
-    const double place = std::clamp((x + kReach) * ((kSize - 1) / (2.0 * kReach)), 0.0, kSize - 1.001);
-    const auto i = static_cast<std::size_t>(place);
-    const double a = place - static_cast<double>(i);
-    step = step_[i] + a * (step_[i + 1] - step_[i]);
-    density = density_[i] + a * (density_[i + 1] - density_[i]);
-  }
-
- private:
-  static constexpr double kReach = 5.0;
-  static constexpr int kSize = 1001;
-  std::array<double, kSize> step_;
-  std::array<double, kSize> density_;
-};
 const StepTable kStep;
 
 // Four samples at a time, in a fixed order: the sums are equal on every machine.
@@ -154,14 +135,18 @@ void Profiles::MeasureQuiet() {
   quiet_ = std::sqrt(static_cast<double>(*middle) / 1.7);
 }
 
-// Projects colours on the direction of the step from outside to inside. The direction is a mean over
-// neighbours: one from a single line's noise would count that noise as contrast.
+// Projects colours on the direction that separates inside from outside: the step's, turned away from those in
+// which the background itself varies beside the line (Fisher's linear discriminant). On the step's own
+// direction, a border between two backgrounds near a side would look like a part of the step and shift it.
+// The step is a mean over neighbours: one from a single line's noise would count that noise as contrast.
 void Profiles::ProjectColours(bool closed) {
   std::array<Eigen::Vector3f, kMaxLines> step;
+  Background all;
   surface_.setZero();
   for (int i = 0; i < count_; ++i) {
     const auto k = static_cast<std::size_t>(i);
     step[k].setZero();
+    background_[k] = Background{};
     if (!readable_[k]) {
       continue;
     }
@@ -169,11 +154,18 @@ void Profiles::ProjectColours(bool closed) {
       const auto inner = static_cast<std::size_t>(3 * j);
       const auto outer = static_cast<std::size_t>(3 * (kSamples - 1 - j));
       const Eigen::Map<const Eigen::Vector3f> inside(&colour_[k][inner]);
-      step[k] += inside - Eigen::Map<const Eigen::Vector3f>(&colour_[k][outer]);
+      const Eigen::Map<const Eigen::Vector3f> outside(&colour_[k][outer]);
+      step[k] += inside - outside;
       surface_ += inside;
+      if (j <= kHalf - kSurelyOut) {
+        background_[k].Add(outside);
+      }
     }
+    all.Add(background_[k]);
   }
   surface_ /= std::max(surface_.norm(), 1e-6F);
+  const Eigen::Matrix3f least =
+      kShareOfAll * all.Covariance() + kColourNoise * kColourNoise * Eigen::Matrix3f::Identity();
   const int reach = std::max(1, count_ / 20);
   for (int i = 0; i < count_; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -181,10 +173,16 @@ void Profiles::ProjectColours(bool closed) {
       continue;
     }
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Background near;
     for (int j = i - reach; j <= i + reach; ++j) {
       if (closed || (j >= 0 && j < count_)) {
-        sum += step[static_cast<std::size_t>((j + count_) % count_)];
+        const auto other = static_cast<std::size_t>((j + count_) % count_);
+        sum += step[other];
+        near.Add(background_[other]);
       }
+    }
+    if (!closed) {
+      sum = (near.Covariance() + least).ldlt().solve(sum).eval();
     }
     sum /= std::max(sum.norm(), 1e-6F);
     along_[k] = static_cast<double>(sum.dot(surface_));

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 
 #include "firmware/vision/intrinsics.hpp"
@@ -113,6 +114,26 @@ class Profiles {
       yp += w * o.yp;
     }
   };
+  // Sums over colours outside of a line, for their covariance.
+  struct Background {
+    float count = 0.0F;
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+    void Add(const Eigen::Vector3f& colour) {
+      count += 1.0F;
+      sum += colour;
+      squares += colour * colour.transpose();
+    }
+    void Add(const Background& o) {
+      count += o.count;
+      sum += o.sum;
+      squares += o.squares;
+    }
+    [[nodiscard]] Eigen::Matrix3f Covariance() const {
+      const float n = std::max(count, 1.0F);
+      return squares / n - (sum / n) * (sum / n).transpose();
+    }
+  };
   // Products of a line's samples y, minus the shading, with the step's samples.
   struct Line {
     bool used = false;
@@ -138,6 +159,7 @@ class Profiles {
   // Brightness along the colour step, minus a common level.
   std::array<std::array<float, kPad + kSamples + kPad + 1>, kMaxLines> value_{};
   std::array<std::array<float, 3 * kSamples>, kMaxLines> colour_;
+  std::array<Background, kMaxLines> background_;
   Eigen::Vector3f surface_ = Eigen::Vector3f::Zero();  // mean colour inside, of length 1
   std::array<double, kMaxLines> along_{};              // component of surface_ along a line's colour step
   std::array<bool, kMaxLines> readable_{};

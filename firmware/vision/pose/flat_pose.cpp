@@ -15,8 +15,9 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-constexpr double kMostTilt = 75.0 * std::numbers::pi / 180.0;  // largest tilt against the line of sight
+constexpr double kMostTilt = 80.0 * std::numbers::pi / 180.0;  // largest tilt against the line of sight
 constexpr double kNoChance = 30.0;  // a pose whose chi^2 exceeds the least one by this is rejected
+constexpr double kByChance = 3.0;   // chi^2 per degree of freedom that noise alone may reach
 constexpr double kSameTurn = 0.01;  // poses nearer to each other than this are one [rad]
 // Damping of the Gauss-Newton steps: no large steps in directions that the corners do not determine.
 constexpr double kStepM = 0.1;
@@ -86,6 +87,7 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
     normal.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
     if (still || round == kRounds) {
       r.chi2 = e.dot(info.lazyProduct(e));
+      r.pose.misfit = n > 3 ? std::max(1.0, r.chi2 / (kByChance * (2 * n - 6))) : 1.0;
       r.pose.cov = normal.inverse() * std::max(1.0, n > 3 ? r.chi2 / (2 * n - 6) : 1.0);
       break;
     }

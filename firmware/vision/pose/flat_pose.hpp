@@ -46,7 +46,10 @@ struct CornerPose {
   model::Pose X_CO;
   model::Mat6 cov = model::Mat6::Zero();  // position in axes of C [m], small rotation about axes of C [rad]
   double off_px = 0.0;                    // rms distance of the corners from their places in this pose
-  int first = 0;                          // the image corner that is O's corner 0
+  // Above 1: the corners fit this pose so much worse than their covariance allows that it must be larger by
+  // this factor.
+  double misfit = 1.0;
+  int first = 0;  // the image corner that is O's corner 0
 };
 
 struct CornerPoses {

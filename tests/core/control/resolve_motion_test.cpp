@@ -100,6 +100,29 @@ TEST_F(ResolveMotionTest, JointMotionWithinTheLimitsIsPassedOnAsItIs) {
   EXPECT_GT(limited, 200);
 }
 
+// A law that is slow is slow in every joint: near a singular posture, a slow hand has fast joints.
+TEST_F(ResolveMotionTest, ShareOfSpeedBoundsEveryJoint) {
+  constexpr double kShare = 0.25;
+  std::mt19937_64 engine(20261130);
+  std::uniform_real_distribution<double> speed(-4.0, 4.0);
+  double most = 0.0;
+  for (int trial = 0; trial < 500; ++trial) {
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      task_.v[i] = speed(engine);
+    }
+    MotionScene scene{reference_, poses_, J_E_B_, J_C_};
+    scene.speed_share = kShare;
+    ResolveMotion(config_, task_, scene, motion_);
+    for (int i = 0; i < 7; ++i) {
+      const double dq_max = config_.guard.joint_velocity_fraction *
+                            config_.arm.joints[static_cast<std::size_t>(i)].dq_max;
+      most = std::max(most, std::fabs(motion_.dq[i]) / dq_max);
+    }
+  }
+  EXPECT_LE(most, kShare + 1e-9);
+  EXPECT_GT(most, kShare - 1e-9);
+}
+
 TEST_F(ResolveMotionTest, JointMotionThatIsNotFiniteIsSaid) {
   task_.v[3] = std::numeric_limits<double>::quiet_NaN();
   Resolve(true);

@@ -270,6 +270,25 @@ TEST(PlateHypothesesTest, CreepingCameraDoesNotBiasTheMean) {
   }
 }
 
+// A camera that moves along its x axis, above a flat square: the corners' x is unsure by the way that they go
+// in the picture while the frame's age is.
+TEST(PlateHypothesesTest, ViewOfAMovingCameraIsLessSure) {
+  constexpr double kSpeed = 0.3;      // [m/s]
+  constexpr double kHeight = 0.4;     // [m]
+  constexpr double kAgeSigma = 0.01;  // [s]
+  const Polygon square = features::MakeSquare(0.08);
+  const Pose X_BO{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
+  const Pose X_BC{X_BO.R, X_BO.p + Vec3(0.0, 0.0, kHeight)};
+  Draw draw(6);
+  CornerView view = ViewOf(square, X_BC, X_BO, 0, 0.03, draw);
+  const double still = SeePlate(square, view, X_BO, kAgeSigma).variance;
+  EXPECT_NEAR(still, view.seen.cov(0, 0), 1e-12 * still);
+  view.V_BC_C[0] = kSpeed;
+  const double by_age = kAgeSigma * kSpeed / kHeight;
+  EXPECT_NEAR(SeePlate(square, view, X_BO, kAgeSigma).variance, still + 0.5 * by_age * by_age, 1e-6 * by_age);
+  EXPECT_NEAR(SeePlate(square, view, X_BO, 0.0).variance, still, 1e-12 * still);
+}
+
 TEST(PlateHypothesesTest, StartOfMotionEndsTheStillState) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
