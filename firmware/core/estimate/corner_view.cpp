@@ -117,19 +117,6 @@ void SlopeOfCorners(const Polygon& polygon, const model::Pose& X_CB, const model
   }
 }
 
-CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexcept {
-  CornerSlope by_camera(2 * polygon.num_corners, 6);
-  for (int i = 0; i < polygon.num_corners; ++i) {
-    features::ImagePoint point;
-    if (!features::ComputePoint(X_CO * polygon.corners[static_cast<std::size_t>(i)], Vec3::Zero(), point)) {
-      by_camera.setZero();
-      break;
-    }
-    by_camera.middleRows<2>(2 * i) = point.L;
-  }
-  return by_camera;
-}
-
 void InOrder(const SeenCorners& seen, int first, SeenCorners::Vector& xy,
              SeenCorners::Covariance& cov) noexcept {
   const auto n = static_cast<int>(seen.xy.size() / 2);

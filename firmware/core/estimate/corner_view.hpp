@@ -47,10 +47,6 @@ using CornerSlope =
 void SlopeOfCorners(const features::Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
                     CornerSlope& H) noexcept;
 
-// The derivative of the corners of a target at `X_CO` by the camera's twist in C. Zero if a corner is not in
-// front of the camera. Real-time: yes.
-[[nodiscard]] CornerSlope SlopeByCamera(const features::Polygon& polygon, const model::Pose& X_CO) noexcept;
-
 // The seen corners and their covariance in O's order. O's first corner is seen corner `first`.
 // Real-time: yes.
 void InOrder(const features::SeenCorners& seen, int first, features::SeenCorners::Vector& xy,

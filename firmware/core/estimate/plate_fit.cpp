@@ -58,14 +58,25 @@ void Average(const PlateView& newest, PlateView& mean) noexcept {
   }
 }
 
+// The sum of the corners' squared speeds in the normalised image [1/s^2], for a camera with the twist
+// `V_BC_C` and a target at rest at `X_CO`.
+double SpeedsSquared(const Polygon& polygon, const model::Pose& X_CO, const model::Vec6& V_BC_C) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < polygon.num_corners; ++i) {
+    const model::Vec3 p_C = X_CO * polygon.corners[static_cast<std::size_t>(i)];
+    const model::Vec3 v_C = V_BC_C.head<3>() + model::Cross(V_BC_C.tail<3>(), p_C);
+    const double depth = std::max(p_C.z(), features::kMinDepth);
+    sum += (v_C.head<2>() - p_C.head<2>() * (v_C.z() / depth)).squaredNorm() / (depth * depth);
+  }
+  return sum;
+}
+
 }  // namespace
 
 PlateView SeePlate(const Polygon& polygon, const CornerView& view, const model::Pose& X_BO,
                    double late_sigma) noexcept {
-  const SeenCorners::Vector by_late =
-      late_sigma * SlopeByCamera(polygon, view.X_CB * X_BO).lazyProduct(view.V_BC_C);
-  const double variance =
-      (view.seen.cov.trace() + by_late.squaredNorm()) / static_cast<double>(view.seen.xy.size());
+  const double by_late = late_sigma * late_sigma * SpeedsSquared(polygon, view.X_CB * X_BO, view.V_BC_C);
+  const double variance = (view.seen.cov.trace() + by_late) / static_cast<double>(view.seen.xy.size());
   return {view.X_CB, view.seen.xy, variance, 1};
 }
 

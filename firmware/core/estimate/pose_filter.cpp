@@ -103,6 +103,20 @@ void Reduce(const Gain& Y, StateCovariance& P) noexcept {
   }
 }
 
+// The derivative of the corners by the camera's twist in C; zero if a corner is not in front of the camera.
+CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexcept {
+  CornerSlope by_camera(2 * polygon.num_corners, 6);
+  for (int i = 0; i < polygon.num_corners; ++i) {
+    features::ImagePoint point;
+    if (!features::ComputePoint(X_CO * polygon.corners[static_cast<std::size_t>(i)], Vec3::Zero(), point)) {
+      by_camera.setZero();
+      break;
+    }
+    by_camera.middleRows<2>(2 * i) = point.L;
+  }
+  return by_camera;
+}
+
 // Rolling shutter: how the seen corners `xy` depend on the target's velocity and turn rate. Each is seen
 // delta after the stamp, so it has moved by delta times these. `H`: their slope over the pose; the result is
 // over velocity and turn rate.
@@ -205,17 +219,16 @@ void AddLateness(const CornerView& view, PoseFilter& start) noexcept {
   start.P(F::kLate, F::kLate) = P_late;
 }
 
-// UpdatePose for a target with kSize / 2 corners.
+// UpdatePose for a target with kSize / 2 corners. If false, `next` is of no use.
 template <int kSize>
 bool Correct(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
-             PoseFilter& filter, double& distance2) noexcept {
+             PoseFilter& next, double& distance2) noexcept {
   using F = PoseFilter;
   using Slope = typename OfCorners<kSize>::Slope;
   using Vector = typename OfCorners<kSize>::Vector;
   using Covariance = typename OfCorners<kSize>::Covariance;
   distance2 = kNoWay;
-  PoseFilter next = filter;
-  Advance(config, hal::ToSeconds(view.stamp_ns - filter.stamp_ns), next);
+  Advance(config, hal::ToSeconds(view.stamp_ns - next.stamp_ns), next);
   SeenCorners::Vector xy_expected;
   CornerSlope slope;
   SeenCorners::Covariance bent;
@@ -288,7 +301,6 @@ bool Correct(const config::PredictConfig& config, const Polygon& polygon, const 
   next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
   next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
   next.stamp_ns = view.stamp_ns;
-  filter = next;
   return true;
 }
 
@@ -355,8 +367,13 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
 bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
                 PoseFilter& filter, double& distance2) noexcept {
   static_assert(Polygon::kMost == 4);
-  return polygon.num_corners == 4 ? Correct<8>(config, polygon, view, filter, distance2)
-                                  : Correct<6>(config, polygon, view, filter, distance2);
+  const PoseFilter before = filter;
+  const bool fits = polygon.num_corners == 4 ? Correct<8>(config, polygon, view, filter, distance2)
+                                             : Correct<6>(config, polygon, view, filter, distance2);
+  if (!fits) {
+    filter = before;
+  }
+  return fits;
 }
 
 FlatMotion MotionAt(const config::PredictConfig& config, const PoseFilter& filter,

@@ -41,10 +41,10 @@ model::VecN SoundRates(const config::ServoConfig& config, const model::VecN& dq,
 // True if a plan for the believed pose suits all of a flat target's poses that are left.
 bool IsToldApart(const estimate::PoseHypotheses& hypotheses) noexcept {
   const auto& plate = hypotheses.plate;
-  return std::all_of(plate.all.begin(), plate.all.begin() + plate.count,
-                     [&](const estimate::PlatePose& pose) {
-                       return control::IsSamePlace(pose.X_BO_still, plate.best().X_BO_still);
-                     });
+  return std::all_of(
+      plate.all.begin(), plate.all.begin() + plate.count, [&](const estimate::PlatePose& pose) {
+        return &pose == &plate.best() || control::IsSamePlace(pose.X_BO_still, plate.best().X_BO_still);
+      });
 }
 
 // The planner knows the gains that the servo began with. With others, the law goes on alone.
