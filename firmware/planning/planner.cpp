@@ -30,7 +30,7 @@ constexpr double kFirstSlice = 6000.0;
 constexpr double kMoreEachRound = 1.5;
 // Of the budget, after which a search that found no way keeps less room before lines of sight and steep
 // views.
-constexpr double kStrictShare = 0.25;
+constexpr double kStrictShare = 0.5;
 constexpr int kShortenWork = 4000;  // at most, for making a path shorter
 // If the path is this much longer than straight to the nearest goal, the search goes on for a quicker motion,
 // for this much work for each second of the motion found: a twentieth of that time with 2.5 us for a posture.
@@ -196,8 +196,7 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
       outcome = outcome == PlanOutcome::kNotProved ? outcome : PlanOutcome::kNoPath;
       slice *= kMoreEachRound;
       if (Spent(request, work) > kStrictShare * static_cast<double>(request.budget)) {
-        space.AllowLessSight();  // a narrow passage is better than none
-        space.AllowSteeperViews();
+        space.AllowNarrowPassages();  // better than none
       }
       continue;
     }

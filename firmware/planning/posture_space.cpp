@@ -13,10 +13,8 @@ namespace {
 
 constexpr double kRoom = 0.001;        // of a path before solids [m]
 constexpr double kProofRoom = 0.0005;  // a start nearer than this could not be proved to keep the margin [m]
-// Before lines of sight [m]: links are rounder in the model than in the picture, and the mount is not known
-// exactly.
-constexpr double kSightRoom = 0.025;
-constexpr double kLeastSightRoom = 0.003;  // the same if no goal has more
+constexpr double kSightRoom = 0.01;    // before lines of sight, because the mount is not known exactly [m]
+constexpr double kLeastSightRoom = 0.003;  // the same if no goal or no path has more
 // Before the edges of the picture, normalised: about what a mount that is turned by 1 degree moves the target
 // by as the hand turns.
 constexpr double kPictureRoom = 0.03;
@@ -32,7 +30,7 @@ constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular
 // the way, unless the start has less, and on the way if there is no other.
 constexpr double kEdgeOn = 0.1;
 constexpr double kSteepest = 0.35;
-constexpr double kLeastSteepest = 0.2;
+constexpr double kLeastSteepest = 0.26;
 constexpr double kFacingRoom = 0.01;    // of this cosine, for a start that has less
 constexpr double kReachRoom = 0.05;     // share of the detector's distances that a path keeps
 constexpr double kNearestPoint = 0.05;  // of the target's points [m]
@@ -137,7 +135,10 @@ bool PostureSpace::AllowLessSight() noexcept {
   return is_less;
 }
 
-void PostureSpace::AllowSteeperViews() noexcept { steepest_ = std::min(steepest_, kLeastSteepest); }
+void PostureSpace::AllowNarrowPassages() noexcept {
+  sight_room_ = std::min(sight_room_, kLeastSightRoom);
+  steepest_ = std::min(steepest_, kLeastSteepest);
+}
 
 void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) const noexcept {
   work.Spend();

@@ -56,8 +56,9 @@ class PostureSpace {
 
   // From here to the next Begin, lines of sight need less room. False if they already do.
   bool AllowLessSight() noexcept;
-  // From here to the next Begin, a flat target may be seen from a steeper side.
-  void AllowSteeperViews() noexcept;
+  // From here to the next Begin, a path needs less room before lines of sight, and may show a flat target
+  // from a steeper side.
+  void AllowNarrowPassages() noexcept;
 
   // The posture at `q`; spends one unit of work. Joint ranges are not checked here.
   void Place(const model::VecN& q, Work& work, Posture& posture) const noexcept;

@@ -52,7 +52,7 @@ double SomeGap(const Sight& sight, const SightLine& line) noexcept {
   int seems = -1;
   for (int i = 0; i < CountLinks(sight); ++i) {
     const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(i)];
-    if (const double gap = std::sqrt(line.Away2(link.middle)) - link.reach; gap < least) {
+    if (const double gap = std::sqrt(line.Away2(link.middle)) - link.reach - kHousing; gap < least) {
       least = gap;
       seems = i;
     }
@@ -62,7 +62,7 @@ double SomeGap(const Sight& sight, const SightLine& line) noexcept {
   }
   const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(seems)];
   const Vec3 p_BP = line.p_BC + line.way;
-  return model::NearestOfSegments(line.p_BC, p_BP, link.p_BA, link.p_BB).distance - link.radius;
+  return model::NearestOfSegments(line.p_BC, p_BP, link.p_BA, link.p_BB).distance - link.radius - kHousing;
 }
 
 // Over all links, boxes and lines of sight.
@@ -77,12 +77,12 @@ NearSight NearestOf(const Sight& sight) noexcept {
     enough = k == 0 ? SomeGap(sight, line) : enough;
     for (int i = 0; i < CountLinks(sight); ++i) {
       const PlacedCapsule& link = sight.bodies.body[static_cast<std::size_t>(i)];
-      const double apart = std::min(enough, nearest.gap) + link.reach + kRounding;
+      const double apart = std::min(enough, nearest.gap) + link.reach + kHousing + kRounding;
       if (apart > 0.0 && line.Away2(link.middle) > apart * apart) {
         continue;  // the link's ball is further
       }
       const model::SegmentPair axes = model::NearestOfSegments(sight.X_BC.p, p_BP, link.p_BA, link.p_BB);
-      const double gap = axes.distance - link.radius;
+      const double gap = axes.distance - link.radius - kHousing;
       if (gap < nearest.gap) {
         nearest = {gap, axes.s, axes.on_first - axes.on_second, axes.on_second, i};
       }

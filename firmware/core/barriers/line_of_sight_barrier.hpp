@@ -16,6 +16,9 @@
 
 namespace fovea::barriers {
 
+// A link's housing, which the camera sees, is wider than its capsule by up to this [m].
+inline constexpr double kHousing = 0.02;
+
 struct Sight {
   const model::ArmPoses& poses;
   const ArmBodies& bodies;
@@ -25,7 +28,7 @@ struct Sight {
   const config::Obstacles& obstacles;
 };
 
-// The smallest distance of a link or a box from a line of sight [m]. Real-time: yes.
+// The smallest distance of a link's housing or a box from a line of sight [m]. Real-time: yes.
 [[nodiscard]] double ClearanceOfSight(const Sight& sight) noexcept;
 
 // The barrier that keeps this distance at least guard.sight_clearance [m]. What is already nearer must

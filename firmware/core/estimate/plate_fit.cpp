@@ -2,6 +2,7 @@
 #include "firmware/core/estimate/plate_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/rotation.hpp"
@@ -17,6 +18,7 @@ constexpr double kStepM = 0.05;        // sizes that damp a step, so that it doe
 constexpr double kStepRad = 0.05;      // that the corners do not determine
 constexpr double kHereM = 5e-5;        // a camera that has moved no further stands still: corners at
 constexpr double kHereRad = 1e-4;      // 0.25 m and further shift by no more than kCalibration
+constexpr double kSameAge = 1e-4;      // a camera at 0.5 m/s moves by 50 um [s]
 constexpr int kFramesMost = 60;        // largest number in a mean
 constexpr double kNoFit = 1e9;         // misfit of a pose that the corners cannot have
 
@@ -58,26 +60,23 @@ void Average(const PlateView& newest, PlateView& mean) noexcept {
   }
 }
 
-// The sum of the corners' squared speeds in the normalised image [1/s^2], for a camera with the twist
-// `V_BC_C` and a target at rest at `X_CO`.
-double SpeedsSquared(const Polygon& polygon, const model::Pose& X_CO, const model::Vec6& V_BC_C) noexcept {
-  double sum = 0.0;
-  for (int i = 0; i < polygon.num_corners; ++i) {
-    const model::Vec3 p_C = X_CO * polygon.corners[static_cast<std::size_t>(i)];
-    const model::Vec3 v_C = V_BC_C.head<3>() + model::Cross(V_BC_C.tail<3>(), p_C);
-    const double depth = std::max(p_C.z(), features::kMinDepth);
-    sum += (v_C.head<2>() - p_C.head<2>() * (v_C.z() / depth)).squaredNorm() / (depth * depth);
-  }
-  return sum;
-}
-
 }  // namespace
 
-PlateView SeePlate(const Polygon& polygon, const CornerView& view, const model::Pose& X_BO,
-                   double late_sigma) noexcept {
-  const double by_late = late_sigma * late_sigma * SpeedsSquared(polygon, view.X_CB * X_BO, view.V_BC_C);
-  const double variance = (view.seen.cov.trace() + by_late) / static_cast<double>(view.seen.xy.size());
-  return {view.X_CB, view.seen.xy, variance, 1};
+PlateView SeePlate(const CornerView& view) noexcept {
+  const double variance = view.seen.cov.trace() / static_cast<double>(view.seen.xy.size());
+  return {view.X_CB, view.seen.xy, variance, 1, view.late, view.V_BC_C};
+}
+
+void MoveToAge(double late, PlateView& view) noexcept {
+  const double earlier = late - view.late;
+  if (!(std::fabs(earlier) > kSameAge)) {
+    return;
+  }
+  // X_BC' = X_BC exp(-earlier V), to second order.
+  const model::Vec3 v = earlier * view.V_BC_C.head<3>();
+  const model::Vec3 w = earlier * view.V_BC_C.tail<3>();
+  view.X_CB = model::Pose{model::RotationOf(w), v + 0.5 * model::Cross(w, v)} * view.X_CB;
+  view.late = late;
 }
 
 void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept {

@@ -16,8 +16,10 @@ struct PlateView {
 
   model::Pose X_CB;
   features::SeenCorners::Vector xy;
-  double variance = 0.0;  // of an entry of one frame's corners
-  int frames = 1;         // number of frames in this mean
+  double variance = 0.0;                     // of an entry of one frame's corners
+  int frames = 1;                            // number of frames in this mean
+  double late = 0.0;                         // X_CB is the pose this long before the frame's stamp [s]
+  model::Vec6 V_BC_C = model::Vec6::Zero();  // the camera's twist then [m/s, rad/s]
 };
 
 // The travel of the camera between two views [m]. Real-time: yes.
@@ -25,10 +27,12 @@ struct PlateView {
   return (a.X_CB.Inverse().p - b.X_CB.Inverse().p).norm();
 }
 
-// The view of one frame, of a target believed at `X_BO`. If the camera moved, the corners are less sure by
-// `late_sigma` [s], the standard deviation of the frame's age. Real-time: yes.
-[[nodiscard]] PlateView SeePlate(const features::Polygon& polygon, const CornerView& view,
-                                 const model::Pose& X_BO, double late_sigma) noexcept;
+// The view of one frame. Real-time: yes.
+[[nodiscard]] PlateView SeePlate(const CornerView& view) noexcept;
+
+// Moves the camera of `view` to where it was if the frame is `late` [s] older than its stamp: the servo finds
+// that only as the camera moves, and by then has views. Real-time: yes.
+void MoveToAge(double late, PlateView& view) noexcept;
 
 // Adds `newest`, a single frame, to the mean of the frames from the camera's present place. Restarts the mean
 // if the camera has moved. Real-time: yes.

@@ -61,7 +61,7 @@ bool Start(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypot
   if (start.plate.count == 0) {
     return false;
   }
-  start.plate_mean = SeePlate(polygon, view, start.plate.best().filter.X_BO, view.late_sigma);
+  start.plate_mean = SeePlate(view);
   start.plate.views.Keep(start.plate_mean);
   start.accepted = 1;
   start.stamp_ns = view.stamp_ns;
@@ -88,13 +88,11 @@ void CatchSlip(const Polygon& polygon, const CornerView& view, PoseHypotheses& h
   hypotheses.slipped = false;
 }
 
-void BeginComparison(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
-  const PoseFilter& filter = hypotheses.plate.best().filter;
+void BeginComparison(const CornerView& view, PoseHypotheses& hypotheses) noexcept {
   PlateComparison& comparison = hypotheses.comparison;
   comparison = PlateComparison{};
   comparison.runs = true;
-  comparison.newest = SeePlate(polygon, view, filter.X_BO,
-                               std::sqrt(std::max(filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0)));
+  comparison.newest = SeePlate(view);
   TakeIntoMean(comparison.newest, hypotheses.plate_mean);
   hypotheses.plate.views.Keep(comparison.newest);
 }
@@ -188,7 +186,7 @@ Verdict TakeView(const config::PredictConfig& config, const Polygon& polygon, co
   }
   CatchSlip(polygon, view, hypotheses);
   if (!hypotheses.comparison.runs) {
-    BeginComparison(polygon, view, hypotheses);
+    BeginComparison(view, hypotheses);
   }
   hypotheses.stamp_ns = view.stamp_ns;
   hypotheses.rejected_in_row = 0;
@@ -209,8 +207,10 @@ bool GoOn(const Polygon& polygon, PoseHypotheses& hypotheses) noexcept {
     const std::int32_t end = std::min<std::int32_t>(comparison.next + PlateComparison::kViewsInTick, count);
     for (; comparison.next < end; ++comparison.next) {
       const std::int32_t i = comparison.next;
-      comparison.fit.Add(polygon, i == 0 ? hypotheses.plate_mean : views[static_cast<std::size_t>(i - 1)],
-                         pose.X_BO_still);
+      PlateView& view =
+          i == 0 ? hypotheses.plate_mean : hypotheses.plate.views.views[static_cast<std::size_t>(i - 1)];
+      MoveToAge(comparison.newest.late, view);
+      comparison.fit.Add(polygon, view, pose.X_BO_still);
     }
     return true;
   }

@@ -11,6 +11,8 @@ using model::Vec3;
 
 constexpr double kHalfPicture = 0.3;  // test points are this far from the target in the normalised image
 constexpr double kInPicture = 1e-3;   // a point nearer to the camera's plane is out of the picture [m]
+constexpr double kDepthShare =
+    0.1;  // shift in the picture that a change of depth by its whole size counts as
 
 // The largest shift in the picture of points at rest in B and at the target's depth, while the camera moved
 // from `X_BC_then` to `X_BC`.
@@ -30,6 +32,18 @@ double ShiftOfScene(const model::Pose& X_BC_then, const model::Pose& X_BC, const
   return most;
 }
 
+// The squared distance of a target's measured place from the expected one, in the picture. Its depth counts
+// little: it is measured much worse than the direction, and the poses that fit a triangle have different
+// ones.
+double Off2(const Vec3& measured, const Vec3& expected) noexcept {
+  if (!(measured.z() >= kInPicture) || !(expected.z() >= kInPicture)) {
+    return HUGE_VAL;
+  }
+  const double deeper = kDepthShare * (measured.z() / expected.z() - 1.0);
+  return (measured.head<2>() / measured.z() - expected.head<2>() / expected.z()).squaredNorm() +
+         deeper * deeper;
+}
+
 }  // namespace
 
 bool IsStuck(double stuck_shift, const PictureView& view, StuckPicture& picture) noexcept {
@@ -39,9 +53,8 @@ bool IsStuck(double stuck_shift, const PictureView& view, StuckPicture& picture)
   if (ShiftOfScene(picture.X_BC, view.X_BC, picture.p_CO_C) <= stuck_shift) {
     return false;
   }
-  const double off_in_C = (view.p_CO_C - picture.p_CO_C).squaredNorm();
-  const double off_in_B = (view.X_BC * view.p_CO_C - picture.X_BC * picture.p_CO_C).squaredNorm();
-  return off_in_C < off_in_B;
+  return Off2(view.p_CO_C, picture.p_CO_C) <
+         Off2(view.p_CO_C, view.X_BC.Inverse() * (picture.X_BC * picture.p_CO_C));
 }
 
 }  // namespace fovea::estimate

@@ -70,6 +70,8 @@ void PlateViewFields(Archive& a, T& view) noexcept {
   SizedEntries(a, view.xy);
   a(view.variance);
   a.Int(view.frames);
+  a(view.late);
+  Entries(a, view.V_BC_C);
 }
 
 template <class Archive, class T>

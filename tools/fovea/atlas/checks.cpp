@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 #include "tools/fovea/atlas/bench.hpp"
 
 namespace fovea::atlas {
@@ -20,11 +21,26 @@ constexpr double kEdgePx = 30.0;
 constexpr double kInsideWorkspace = 0.003;  // distance of the hand from the servo's bound [m]
 constexpr double kHandRadius = 0.03;        // of a ball about the flange [m]
 constexpr double kThingClear = 0.01;        // distance of things from the lines of sight and the target [m]
+constexpr int kPerSide = 4;                 // points of a flat target's side that are looked at
 // Along a path.
 constexpr double kDepthOnTheWay = 0.05;  // [m]
 constexpr double kSteepest = 0.2;        // cosine between a flat target's normal and the line of sight
 // Of the links, only these may come near a plane: those before them stand on the table.
 constexpr std::size_t kOuterLinks = 4;
+
+// The target's centre [m]; of a flat one, also points of its sides and between them and the centre.
+std::vector<Vec3> PointsOf(const features::TargetOutline& outline, const Pose& X_BO) {
+  std::vector<Vec3> points{X_BO.p};
+  for (int i = 0; outline.num_points > 1 && i < outline.num_points; ++i) {
+    const Vec3 from = X_BO * outline.p_OP[static_cast<std::size_t>(i)];
+    const Vec3 to = X_BO * outline.p_OP[static_cast<std::size_t>((i + 1) % outline.num_points)];
+    for (int k = 0; k < kPerSide; ++k) {
+      points.push_back(from + k * (to - from) / kPerSide);
+      points.push_back(0.5 * (points.back() + X_BO.p));
+    }
+  }
+  return points;
+}
 
 // A segment's point nearest to `p`, as a share of the way from `a` to `b`.
 double ShareOf(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -220,8 +236,9 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, con
       const Capsule& body = posture.bodies[i];
       const bool could_hide = i + ArmShape::kNeighbours + 1 < posture.bodies.size();
       if (near(body.p_LA, body.p_LB, body.radius) ||
-          (could_hide && AreNearer(posture.X_BC.p, p_BP, body.p_LA, body.p_LB,
-                                   body.radius + servo.guard.sight_clearance + clear.sight))) {
+          (could_hide &&
+           AreNearer(posture.X_BC.p, p_BP, body.p_LA, body.p_LB,
+                     body.radius + barriers::kHousing + servo.guard.sight_clearance + clear.sight))) {
         return true;
       }
     }
@@ -236,33 +253,22 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, con
 bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO, const Clear& clear) const {
   constexpr double kShare = 0.9;
   const features::TargetOutline outline = scene_.servo.feature.Outline();
-  for (int k = 0; k < outline.num_points; ++k) {
-    const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
+  const std::vector<Vec3> points = PointsOf(outline, X_BO);
+  return std::any_of(points.begin(), points.end(), [&](const Vec3& p_BP) {
     const Vec3 p_before = posture.X_BC.p + kShare * (p_BP - posture.X_BC.p);
-    if (ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius) ||
-        IsNearABox(boxes_, posture.X_BC.p, p_before, scene_.servo.guard.sight_clearance + clear.sight) ||
-        IsNearABox(boxes_, p_BP, p_BP, outline.radius + clear.target)) {
-      return true;
-    }
-  }
-  return false;
+    return ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius) ||
+           IsNearABox(boxes_, posture.X_BC.p, p_before, scene_.servo.guard.sight_clearance + clear.sight) ||
+           IsNearABox(boxes_, p_BP, p_BP, outline.radius + clear.target);
+  });
 }
 
-// Whether a drawn solid of the arm hides a point of the target's outline: a flat one's corners and points
-// between them; of a ball, points of the circle that the camera sees as its outline.
+// Whether a drawn solid of the arm hides a point of the target or, of a ball, of the circle that the camera
+// sees as its outline.
 bool StartChecks::IsHidden(const StartPosture& posture, const Pose& X_BO) const {
-  constexpr int kPerSide = 4;
   constexpr int kAround = 16;
   const features::TargetOutline outline = scene_.servo.feature.Outline();
   const Vec3& p_BC = posture.X_BC.p;
-  std::vector<Vec3> points{X_BO.p};
-  for (int i = 0; outline.num_points > 1 && i < outline.num_points; ++i) {
-    const Vec3 from = X_BO * outline.p_OP[static_cast<std::size_t>(i)];
-    const Vec3 to = X_BO * outline.p_OP[static_cast<std::size_t>((i + 1) % outline.num_points)];
-    for (int k = 0; k < kPerSide; ++k) {
-      points.push_back(from + k * (to - from) / kPerSide);
-    }
-  }
+  std::vector<Vec3> points = PointsOf(outline, X_BO);
   if (outline.radius > 0.0) {
     const Vec3 away = X_BO.p - p_BC;
     const double share = std::pow(outline.radius / away.norm(), 2);
