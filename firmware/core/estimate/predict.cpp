@@ -204,11 +204,11 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.hypotheses) : lifted.p_CO_C;
 
   WatchPicture(config.predict, X_BC, p_CO_C, eye);
-  PictureView picture{taken_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
+  PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C, view.seen.xy};
   if (measurement.same_for_ns > 0) {
     // If the history does not reach back that far, the hand's motion counts from now on.
-    static_cast<void>(
-        CameraPoseAt(state.history, config.arm, config.X_EC, picture.since_ns, picture.X_BC_since));
+    static_cast<void>(CameraPoseAt(state.history, config.arm, config.X_EC, taken_ns - measurement.same_for_ns,
+                                   picture.X_BC_since));
   }
   if (IsStuck(config.predict.stuck_shift, picture, state.picture)) {
     return hal::Intake::kStuckPicture;

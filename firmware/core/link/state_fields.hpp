@@ -262,6 +262,7 @@ void EachGroup(State& s, const Visit& visit) noexcept {
     a(s.predict.picture.since_ns);
     PoseFields(a, s.predict.picture.X_BC);
     Entries(a, s.predict.picture.p_CO_C);
+    SizedEntries(a, s.predict.picture.xy);
   });
   visit(Pace::kMeasurement, "knowledge", [&s](auto& a) {
     a.Choice(s.predict.knowledge, estimate::kNumKnowledge);

@@ -91,7 +91,7 @@ TEST(LineOfSightBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
         const Vec3 on_link = from + a / double{kPoints} * (to - from);
         for (int b = 0; b <= kPoints; ++b) {
           const Vec3 on_sight = posture.X_BC.p + b / double{kPoints} * (p_BO - posture.X_BC.p);
-          least = std::min(least, (on_link - on_sight).norm() - link.radius);
+          least = std::min(least, (on_link - on_sight).norm() - link.radius - 0.02);  // and its housing
         }
       }
     }
