@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <numbers>
 #include <random>
 
 #include "firmware/core/model/rotation.hpp"
@@ -63,7 +64,7 @@ TEST(StuckPictureTest, RollIsToldByTheCorners) {
   const auto corners = [&](double turn) {
     features::SeenCorners::Vector xy(8);
     for (int i = 0; i < 4; ++i) {
-      const double angle = turn + 0.5 * model::kPi * i;
+      const double angle = turn + 0.5 * std::numbers::pi * i;
       xy.segment<2>(2 * i) << 0.1 * std::cos(angle) + kNoise * normal(engine),
           0.1 * std::sin(angle) + kNoise * normal(engine);
     }

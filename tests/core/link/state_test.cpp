@@ -34,7 +34,7 @@ static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
 static_assert(sizeof(task::TuningState) == 544);
-static_assert(sizeof(task::ServoState) == 103184);
+static_assert(sizeof(task::ServoState) == 103176);
 
 using Buffer = std::vector<std::uint8_t>;
 
