@@ -13,14 +13,15 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr double kCalibration = 2e-4;  // uncertainty of arm, camera and lens, in the normalised image
-constexpr double kStepM = 0.05;        // sizes that damp a step, so that it does not jump in directions
-constexpr double kStepRad = 0.05;      // that the corners do not determine
-constexpr double kHereM = 5e-5;        // a camera that has moved no further stands still: corners at
-constexpr double kHereRad = 1e-4;      // 0.25 m and further shift by no more than kCalibration
-constexpr double kSameAge = 1e-4;      // a camera at 0.5 m/s moves by 50 um [s]
-constexpr int kFramesMost = 60;        // largest number in a mean
-constexpr double kNoFit = 1e9;         // misfit of a pose that the corners cannot have
+constexpr double kCalibration = 2e-4;        // uncertainty of arm, camera and lens, in the normalised image
+constexpr double kStepM = 0.05;              // sizes that damp a step, so that it does not jump in directions
+constexpr double kStepRad = 0.05;            // that the corners do not determine
+constexpr double kHereM = 5e-5;              // a camera that has moved no further stands still: corners at
+constexpr double kHereRad = 1e-4;            // 0.25 m and further shift by no more than kCalibration
+constexpr double kSameAge = 1e-4;            // a camera at 0.5 m/s moves by 50 um [s]
+constexpr double kLeastAgeVariance = 1e-12;  // [s^2]
+constexpr int kFramesMost = 60;              // largest number in a mean
+constexpr double kNoFit = 1e9;               // misfit of a pose that the corners cannot have
 
 double WeightOf(double variance, int frames) noexcept {
   return 1.0 / (variance / frames + kCalibration * kCalibration);
@@ -41,6 +42,19 @@ bool OffFrom(const Polygon& polygon, const PlateView& view, const model::Pose& X
     e.segment<2>(2 * i) = view.xy.segment<2>(2 * ((first + i) % n)) - expected.segment<2>(2 * i);
   }
   return true;
+}
+
+// The derivative of the expected corners by the frame's age [1/s]: how they move as the camera goes back.
+SeenCorners::Vector SlopeByAge(const Polygon& polygon, const PlateView& view,
+                               const model::Pose& X_BO) noexcept {
+  const model::Pose X_CO = view.X_CB * X_BO;
+  SeenCorners::Vector slope(2 * polygon.num_corners);
+  for (int i = 0; i < polygon.num_corners; ++i) {
+    const model::Vec3 p_C = X_CO * polygon.corners[static_cast<std::size_t>(i)];
+    const model::Vec3 v_C = view.V_BC_C.head<3>() + model::Cross(view.V_BC_C.tail<3>(), p_C);
+    slope.segment<2>(2 * i) = (v_C.head<2>() - p_C.head<2>() * (v_C.z() / p_C.z())) / p_C.z();
+  }
+  return slope;
 }
 
 // True if the camera has stayed where `view` was taken.
@@ -108,23 +122,27 @@ void PlateFit::Add(const Polygon& polygon, const PlateView& view, const model::P
   }
   CornerSlope H;
   SlopeOfCorners(polygon, view.X_CB, X_BO, H);
+  Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::ColMajor, 2 * Polygon::kMost, 7> A(H.rows(), 7);
+  A.leftCols<6>() = H;
+  A.col(kLate) = SlopeByAge(polygon, view, X_BO);
   const double weight = WeightOf(view.variance, view.frames);
-  information_ += weight * H.transpose().lazyProduct(H);
-  right_ += weight * H.transpose().lazyProduct(e);
+  information_ += weight * A.transpose().lazyProduct(A);
+  right_ += weight * A.transpose().lazyProduct(e);
 }
 
-void PlateFit::Improve(model::Pose& X_BO) const noexcept {
-  model::Mat6 information = information_;
-  model::Vec6 step = right_;
+void PlateFit::Improve(double late_sigma, model::Pose& X_BO) const noexcept {
+  Eigen::Matrix<double, 7, 7> information = information_;
+  Eigen::Matrix<double, 7, 1> step = right_;
   information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
-  information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
+  information.diagonal().segment<3>(3).array() += 1.0 / (kStepRad * kStepRad);
+  information(kLate, kLate) += 1.0 / std::max(late_sigma * late_sigma, kLeastAgeVariance);
   model::FactorCholesky(information);
   model::SolveCholesky(information, step);
   if (!is_possible_ || !step.allFinite()) {
     return;
   }
   X_BO.p += step.head<3>();
-  X_BO.R = model::RotationOf(step.tail<3>()) * X_BO.R;
+  X_BO.R = model::RotationOf(step.segment<3>(3)) * X_BO.R;
 }
 
 }  // namespace fovea::estimate

@@ -44,13 +44,16 @@ void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept;
                               const PlateView& newest, const model::Pose& X_BO) noexcept;
 
 // One Gauss-Newton step of a pose to several views, view by view. One step suffices, because the views before
-// left the pose close. Real-time: yes.
+// left the pose close. The frames' age, which is the same for all views and not exactly known, is a seventh
+// unknown: if it is wrong, views of a camera in motion are off in the direction of that motion, and must not
+// pull the pose. Real-time: yes.
 class PlateFit {
  public:
   // Adds a view. `X_BO`: the same pose for all of them.
   void Add(const features::Polygon& polygon, const PlateView& view, const model::Pose& X_BO) noexcept;
-  // Improves `X_BO`. It stays unchanged if a corner of a view was not in front of the camera.
-  void Improve(model::Pose& X_BO) const noexcept;
+  // Improves `X_BO`. It stays unchanged if a corner of a view was not in front of the camera. `late_sigma`:
+  // standard deviation of the frames' age [s].
+  void Improve(double late_sigma, model::Pose& X_BO) const noexcept;
 
   // Calls `visit` for each of the sums.
   template <class Self, class Visit>
@@ -61,8 +64,11 @@ class PlateFit {
   }
 
  private:
-  model::Mat6 information_ = model::Mat6::Zero();  // of the normal equations
-  model::Vec6 right_ = model::Vec6::Zero();
+  static constexpr int kLate = 6;  // after position and turn
+
+  // Of the normal equations.
+  Eigen::Matrix<double, 7, 7> information_ = Eigen::Matrix<double, 7, 7>::Zero();
+  Eigen::Matrix<double, 7, 1> right_ = Eigen::Matrix<double, 7, 1>::Zero();
   bool is_possible_ = true;
 };
 

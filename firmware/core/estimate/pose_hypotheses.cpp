@@ -93,6 +93,8 @@ void BeginComparison(const CornerView& view, PoseHypotheses& hypotheses) noexcep
   comparison = PlateComparison{};
   comparison.runs = true;
   comparison.newest = SeePlate(view);
+  const PoseFilter& filter = hypotheses.plate.best().filter;
+  comparison.late_sigma = std::sqrt(std::max(filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0));
   TakeIntoMean(comparison.newest, hypotheses.plate_mean);
   hypotheses.plate.views.Keep(comparison.newest);
 }
@@ -214,7 +216,7 @@ bool GoOn(const Polygon& polygon, PoseHypotheses& hypotheses) noexcept {
     }
     return true;
   }
-  comparison.fit.Improve(pose.X_BO_still);
+  comparison.fit.Improve(comparison.late_sigma, pose.X_BO_still);
   pose.still_misfit = MisfitOf(polygon, views, comparison.newest, pose.X_BO_still);
   comparison.fit = PlateFit{};
   comparison.next = 0;

@@ -59,7 +59,8 @@ struct PlateComparison {
   std::int32_t pose = 0;  // number of the hypothesis
   std::int32_t next = 0;  // view to fit it to: 0 is the mean, then the kept ones; then its misfit is computed
   PlateFit fit;
-  PlateView newest;  // with which it began
+  PlateView newest;         // with which it began
+  double late_sigma = 0.0;  // of the frames' age, then [s]
 };
 
 // A target has one kind. The other kind's set stays empty.

@@ -114,6 +114,7 @@ void PlateComparisonFields(Archive& a, T& c) noexcept {
     }
   });
   PlateViewFields(a, c.newest);
+  a(c.late_sigma);
 }
 
 // Without a disc's misfits to the still pose, which are computed before use.

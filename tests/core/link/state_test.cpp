@@ -23,8 +23,8 @@ static_assert(sizeof(task::InputState) == 232);
 static_assert(sizeof(estimate::ContactState) == 688);
 static_assert(sizeof(estimate::PushWatch) == 80);
 static_assert(sizeof(estimate::TargetFilter) == 824);
-static_assert(sizeof(estimate::PoseHypotheses) == 19888);
-static_assert(sizeof(estimate::PredictState) == 62184);
+static_assert(sizeof(estimate::PoseHypotheses) == 20008);
+static_assert(sizeof(estimate::PredictState) == 62304);
 static_assert(sizeof(estimate::EncoderWatch) == 1096);
 static_assert(sizeof(estimate::EyeWatch) == 232);
 static_assert(sizeof(task::ModeState) == 5);
@@ -34,7 +34,7 @@ static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
 static_assert(sizeof(task::TuningState) == 544);
-static_assert(sizeof(task::ServoState) == 103176);
+static_assert(sizeof(task::ServoState) == 103296);
 
 using Buffer = std::vector<std::uint8_t>;
 
