@@ -39,8 +39,8 @@ TEST(Hold, UnreachableBallEndsInHoldWithAReason) {
   // workspace or, turned round, stand behind the wall.
   const sim::Summary s = RunShipped("ball",
                                     {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79",
-                                     "safety.planes=[0, 0, 1, 0.01, 1, 0, 0, -0.25]"},
-                                    watch.Options(8.0));
+                                     "safety.planes=[0, 0, 1, 0.01, 1, 0, 0, -0.25]", "run.duration_s=10"},
+                                    watch.Options(10.0));
   PrintResidual(s);
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(LastMode(s), "hold");

@@ -302,7 +302,7 @@ TEST(PlateHypothesesTest, ViewsOfWrongAgeDoNotPullThePose) {
   const double off_mm = 1e3 * (best.X_BO_still.p - flat.p).norm();
   std::cout << "late by " << 1e3 * best.filter.late << " ms, off by " << off_mm << " mm\n";
   EXPECT_EQ(hypotheses.plate.stillness, Stillness::kStill);
-  EXPECT_LT(off_mm, 0.1);
+  EXPECT_LT(off_mm, 0.03);
 }
 
 TEST(PlateHypothesesTest, StartOfMotionEndsTheStillState) {

@@ -49,7 +49,7 @@ TEST(StuckPictureTest, DepthThatIsMeasuredBadlyTellsNothing) {
     const int settles = CountStuck(false, noise, kTrials);
     std::cout << "depth within " << 100.0 * noise << " %: of " << kTrials << ", stuck " << hangs
               << " if the camera hangs, " << settles << " if the arm settles\n";
-    EXPECT_GT(hangs, kTrials * 9 / 10);
+    EXPECT_GT(hangs, kTrials * 17 / 20);  // the other steps are too small to be judged
     EXPECT_LT(settles, kTrials / 50);
   }
 }
