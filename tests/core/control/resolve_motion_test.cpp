@@ -114,8 +114,8 @@ TEST_F(ResolveMotionTest, ShareOfSpeedBoundsEveryJoint) {
     scene.speed_share = kShare;
     ResolveMotion(config_, task_, scene, motion_);
     for (int i = 0; i < 7; ++i) {
-      const double dq_max = config_.guard.joint_velocity_fraction *
-                            config_.arm.joints[static_cast<std::size_t>(i)].dq_max;
+      const double dq_max =
+          config_.guard.joint_velocity_fraction * config_.arm.joints[static_cast<std::size_t>(i)].dq_max;
       most = std::max(most, std::fabs(motion_.dq[i]) / dq_max);
     }
   }
