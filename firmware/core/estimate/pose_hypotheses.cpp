@@ -90,8 +90,9 @@ void CatchSlip(const Polygon& polygon, const CornerView& view, PoseHypotheses& h
 
 void BeginComparison(const CornerView& view, PoseHypotheses& hypotheses) noexcept {
   PlateComparison& comparison = hypotheses.comparison;
-  comparison = PlateComparison{};
   comparison.runs = true;
+  comparison.ended = false;
+  comparison.pose = 0;  // the others begin as the last comparison left them: 0
   comparison.newest = SeePlate(view);
   const PoseFilter& filter = hypotheses.plate.best().filter;
   comparison.late_sigma = std::sqrt(std::max(filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0));

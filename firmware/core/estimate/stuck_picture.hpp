@@ -34,7 +34,7 @@ struct PictureView {
   model::Pose X_BC_since;     // the camera's pose then
   model::Pose X_BC;           // at the measurement's stamp
   model::Vec3 p_CO_C;         // the target as measured [m]
-  features::SeenCorners::Vector xy;  // a flat target's corners in the normalised image; else empty
+  const features::SeenCorners::Vector& xy;  // a flat target's corners in the normalised image; else empty
 };
 
 // True if the picture is stuck, from `view` and the measurements before. `stuck_shift`: in the normalised
