@@ -46,16 +46,16 @@ TEST_P(PlannerOn, EveryPlanKeepsAllLimitsAndReachesTheGoal) {
     ++found;
     test::PlanResidual residual = test::PlanWatch(config, request).Watch(plan);
     EXPECT_LE(residual.held_ticks, 0) << "start " << i;
-    if (planner.effort().work > request.budget / 4) {  // nothing was found with all of the room
+    if (planner.effort().work > request.budget / 2) {  // nothing was found with all of the room
       ++narrow;
       EXPECT_GE(residual.sight, 0.002) << "start " << i;    // of 0.003
-      EXPECT_GE(residual.facing, -0.151) << "start " << i;  // 0.2 of 0.35
+      EXPECT_GE(residual.facing, -0.091) << "start " << i;  // 0.26 of 0.35
       residual.sight = residual.facing = HUGE_VAL;
     }
     worst.Add(residual);
   }
   std::printf(
-      "%d of %d, %d of them after a quarter of the budget: velocity %.3f, acceleration %.3f, jerk %.3f of "
+      "%d of %d, %d of them after half of the budget: velocity %.3f, acceleration %.3f, jerk %.3f of "
       "the limits; room %.1f mm, picture %.1f px, "
       "sight %.1f mm, facing %.4f, tilt %.4f; at the end %.1e; guard held %d ticks, off %.1e rad\n",
       found, kStarts, narrow, worst.velocity, worst.acceleration, worst.jerk, 1e3 * worst.solid,

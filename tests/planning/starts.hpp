@@ -85,7 +85,7 @@ class PlannedStarts {
     const model::Pose X_BC = poses_.X_BE * config_.X_EC;
     const features::TargetOutline outline = config_.feature.Outline();
     allowed = allowed && barriers::ClearanceOfSight(
-                             {poses_, bodies, X_BC, outline, request.X_BO, config_.guard.obstacles}) > 0.03;
+                             {poses_, bodies, X_BC, outline, request.X_BO, config_.guard.obstacles}) > 0.01;
     const vision::Intrinsics camera = BallCamera();
     for (int i = 0; i < outline.num_points; ++i) {
       const model::Vec3 p_BP = request.X_BO * outline.p_OP[static_cast<std::size_t>(i)];
