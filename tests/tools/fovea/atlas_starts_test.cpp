@@ -125,11 +125,33 @@ TEST_F(AtlasStartsFile, ErrorsNameLineColumnAndWhatIsAllowed) {
   ExpectRefused(heading + "0,0,0,-2,0,1,0,3,0,0.1,0,0,0\n", "no run can begin there: the target's outline");
 }
 
+TEST_F(AtlasStartsFile, TargetOutOfTheDetectorsReachIsRefused) {
+  const std::string text = fmt::format("{}\n{},{}\n", kPostureHeading, fmt::join(drawn_.q, ","), Target());
+  std::ofstream(file_) << text;
+  const double distance =
+      std::hypot(drawn_.depth * scene_.camera.Ray(drawn_.u_px, drawn_.v_px).x(),
+                 drawn_.depth * scene_.camera.Ray(drawn_.u_px, drawn_.v_px).y(), drawn_.depth);
+  for (const double off : {-1e-3, 1e-3}) {
+    Scene scene = scene_;
+    scene.reach =
+        off < 0.0 ? planning::EyeReach{0.1, distance + off} : planning::EyeReach{distance + off, 9.0};
+    try {
+      static_cast<void>(ReadStarts(file_, scene));
+      ADD_FAILURE() << off;
+    } catch (const config::InputError& error) {
+      EXPECT_THAT(error.what(),
+                  HasSubstr("starts.csv:2: no run can begin there: the target is nearer to the camera "
+                            "than vision.distance_min, or farther than vision.distance_max"));
+    }
+  }
+}
+
 // Turns, shifts and distances are those of the benchmark, as far as the poses of the file say. Each line can
 // be run.
 TEST(AtlasViews, PairsHaveTheBenchmarksRangesAndCanBeRead) {
   Scene scene = test::AtlasScene("gantry", "triangle");
   scene.servo.guard.workspace_radius = 2.5;
+  scene.reach.farthest = 1.2;
   constexpr int kPairs = 40;
   std::vector<double> turns;
   double worst = 0.0;
@@ -144,6 +166,7 @@ TEST(AtlasViews, PairsHaveTheBenchmarksRangesAndCanBeRead) {
     EXPECT_TRUE(turns.back() > 2.6 && turns.back() < 180.1) << turns.back();
     EXPECT_TRUE(pair.shift >= 0.013 && pair.shift <= 0.493);
     EXPECT_TRUE(pair.goal.xyz[2] >= 0.5 && pair.goal.xyz[2] <= 0.9);
+    EXPECT_LE((pair.X_BC.Inverse() * pair.X_BO).p.norm(), 1.2);
   }
   std::sort(turns.begin(), turns.end());
   std::cout << "turns from " << turns.front() << " to " << turns.back() << " deg, median "

@@ -256,8 +256,8 @@ TEST(AtlasFigures, WilsonIntervalMatchesItsDefinition) {
 TEST(AtlasSampler, RefusesStartsOnlyForGeometry) {
   EXPECT_THAT(atlas::kRejectionNames,
               testing::ElementsAreArray({"start_outside_barrier", "start_near_solid", "target_near_edge",
-                                         "target_below_table", "arm_in_the_way", "thing_in_the_way",
-                                         "no_goal_posture"}));
+                                         "target_out_of_reach", "target_below_table", "arm_in_the_way",
+                                         "thing_in_the_way", "no_goal_posture"}));
 }
 
 TEST(AtlasFigures, GoalAllowsOneMissInAThousand) {
@@ -277,7 +277,7 @@ TEST(AtlasFigures, RefusalsAndSeedAreReported) {
   atlas::Figures figures;
   figures.heading = {"circle", 7, {}, "0123456789abcdef", {}, ""};
   figures.runs = 10;
-  figures.rejections = {11, 12, 13, 14, 15, 16, 17};
+  figures.rejections = {11, 12, 13, 14, 15, 16, 17, 18};
   const json told = json::parse(atlas::ToJson(figures));
   const std::string table = atlas::ToTable(figures);
   const std::string page =

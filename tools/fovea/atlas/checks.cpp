@@ -286,6 +286,11 @@ bool StartChecks::ClearOfSolids(const StartPosture& posture) const { return Clea
 
 bool StartChecks::InPicture(const Pose& X_CO) const { return InPicture(X_CO, kEdgePx); }
 
+bool StartChecks::InReach(const Pose& X_CO) const {
+  const double distance = X_CO.p.norm();
+  return distance >= scene_.reach.nearest && distance <= scene_.reach.farthest;
+}
+
 bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO) const {
   return ArmInTheWay(posture, X_BO, kAtEnds) || IsHidden(posture, X_BO);
 }

@@ -26,8 +26,10 @@ class StartChecks {
   [[nodiscard]] bool InsideBarrier(const StartPosture& posture) const;
   // True when links, hand and camera are clear of planes and boxes.
   [[nodiscard]] bool ClearOfSolids(const StartPosture& posture) const;
-  // True when the target's outline is completely 30 px inside the picture; when it is above the table.
+  // True when the target's outline is completely 30 px inside the picture; when its origin is as far from the
+  // camera as the detector looks for it; when it is above the table.
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
+  [[nodiscard]] bool InReach(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
   // True when the arm is too close to itself, to the target or to a line of sight, or hides a part of the
   // target.

@@ -67,6 +67,7 @@ std::optional<Rejection> Sampler::Refusal(const StartPosture& posture, const Pos
   return !checks.InsideBarrier(posture)                     ? std::optional(Rejection::kStartOutsideBarrier)
          : !checks.ClearOfSolids(posture)                   ? std::optional(Rejection::kStartNearSolid)
          : !checks.InPicture(posture.X_BC.Inverse() * X_BO) ? std::optional(Rejection::kTargetNearEdge)
+         : !checks.InReach(posture.X_BC.Inverse() * X_BO)   ? std::optional(Rejection::kTargetOutOfReach)
          : !checks.TargetAboveTable(X_BO)                   ? std::optional(Rejection::kTargetBelowTable)
          : checks.ArmInTheWay(posture, X_BO)                ? std::optional(Rejection::kArmInTheWay)
          : checks.BenchInTheWay(posture, X_BO)              ? std::optional(Rejection::kThingInTheWay)

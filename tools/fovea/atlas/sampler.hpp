@@ -22,20 +22,22 @@ enum class Rejection : std::uint8_t {
   kStartOutsideBarrier,  // the hand is outside the workspace
   kStartNearSolid,       // the arm is too near to the table or to another solid
   kTargetNearEdge,       // its outline is not completely 30 px inside the picture
+  kTargetOutOfReach,     // it is nearer or farther than the detector looks for it
   kTargetBelowTable,     // the target intersects the table
   kArmInTheWay,          // the arm is too near to itself, the target or a line of sight
   kThingInTheWay,        // a thing on the bench intersects the target or a line of sight
   kNoGoalPosture,        // no posture found that reaches the goal and meets all these conditions
 };
-inline constexpr std::array<const char*, 7> kRejectionNames{
-    "start_outside_barrier", "start_near_solid", "target_near_edge", "target_below_table",
-    "arm_in_the_way",        "thing_in_the_way", "no_goal_posture"};
+inline constexpr std::array<const char*, 8> kRejectionNames{
+    "start_outside_barrier", "start_near_solid", "target_near_edge", "target_out_of_reach",
+    "target_below_table",    "arm_in_the_way",   "thing_in_the_way", "no_goal_posture"};
 // Descriptions for people, in the same order.
 inline constexpr std::array<const char*, kRejectionNames.size()> kRejectionWords{
     "hand outside the workspace, or less than 3 mm inside the servo's bound",
     "links less than 2 cm, hand or camera less than 4 cm farther from table and boxes than the servo keeps "
     "them",
     "the target's outline is not completely 30 px inside the picture",
+    "the target is nearer to the camera than vision.distance_min, or farther than vision.distance_max",
     "the target intersects the table",
     "the arm is too near to itself, the target or the line of sight, or hides a part of the target",
     "an object or a box on the bench is in or near the target or a line of sight",

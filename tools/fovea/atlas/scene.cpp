@@ -10,6 +10,7 @@
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/roll_pitch_yaw.hpp"
 #include "firmware/host/config/servo_keys.hpp"
+#include "firmware/host/config/vision_keys.hpp"
 #include "firmware/host/robots/robot.hpp"
 #include "firmware/host/robots/shipped_robots.hpp"
 #include "tools/bench/common/shell.hpp"
@@ -82,11 +83,14 @@ Scene LoadScene(const std::string& target, const std::vector<std::string>& assig
   config::AddTargetKeys(target_settings, keys);
   AddCameraKeys(camera, hfov_deg, keys);
   keys.Text("arm.model", arm, "");
+  config::VisionSettings vision;
+  config::AddVisionKeys(vision, keys);
   std::vector<double> boxes;
   keys.Numbers("bench.boxes", boxes, 0, 1000, -1e6, 1e6, "m", "");
   keys.ApplyRecorded(ValuesOf(ScenarioOf(target), assignments));
   Scene scene;
   scene.camera = CameraOf(camera.intrinsics, hfov_deg);
+  scene.reach = {vision.config.distance_min, vision.config.distance_max};
   scene.boxes = config::MakeBoxes("bench.boxes", boxes);
   const robots::Robot robot = robots::LoadRobot(robots::FindRobot(arm, "arm.model"));
   scene.drawn = std::make_shared<const DrawnArm>(robot);

@@ -10,6 +10,7 @@
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/features/target_feature.hpp"
 #include "firmware/core/model/kinematics.hpp"
+#include "firmware/planning/eye_reach.hpp"
 #include "firmware/vision/intrinsics.hpp"
 #include "tools/fovea/atlas/drawn_arm.hpp"
 
@@ -18,6 +19,7 @@ namespace fovea::atlas {
 struct Scene {
   config::ServoConfig servo;  // as the simulator's servo has it
   vision::Intrinsics camera;
+  planning::EyeReach reach;        // of the detector
   std::vector<config::Box> boxes;  // on the bench, known to the servo or not
   std::shared_ptr<const DrawnArm> drawn;
 };

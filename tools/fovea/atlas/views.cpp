@@ -84,7 +84,8 @@ ViewPair DrawViewPair(const Scene& scene, std::uint64_t seed, int index) {
     const Vec3 axis = DrawDirection(engine);
     const Vec3 shift = pair.shift * DrawDirection(engine);
     pair.X_BC = Rounded(at_goal.X_BC * Pose{model::RotationOf(pair.turn * axis), shift});
-    if (!checks.TargetAboveTable(pair.X_BO) || !checks.InPicture(pair.X_BC.Inverse() * pair.X_BO) ||
+    const Pose X_CO = pair.X_BC.Inverse() * pair.X_BO;
+    if (!checks.TargetAboveTable(pair.X_BO) || !checks.InPicture(X_CO) || !checks.InReach(X_CO) ||
         !checks.StandsAtGoal(at_goal, pair.X_BO)) {
       continue;
     }
