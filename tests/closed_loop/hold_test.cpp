@@ -64,6 +64,23 @@ TEST(Hold, BallBeyondTheWorkspaceEndsInHoldAtTheBarrier) {
   ExpectSound(s);
 }
 
+// The end of a joint's range keeps the hand one degree from its goal. The picture is then 0.2 px off.
+TEST(Hold, GoalJustPastAJointsEndEndsInHold) {
+  RestWatch watch;
+  const sim::Summary s =
+      RunShipped("square",
+                 {"arm.q_start=[1.8719, 1.6592, -1.9479, -1.5433, -0.5901, 0.6927, -1.0301]",
+                  "target.position=[-0.0043, -0.0872, 0.5054]", "target.rpy_deg=[-80.38, -61.6, 171.07]",
+                  "safety.planes=[0, 0, 1, 0.03]", "run.duration_s=14"},
+                 watch.Options(14.0));
+  PrintResidual(s);
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(LastMode(s), "hold");
+  EXPECT_EQ(LastReason(s), "goal_unreachable");
+  EXPECT_LT(watch.at_the_end(), kAtRest);
+  ExpectSound(s);
+}
+
 TEST(Hold, HomeMotionEndsAtRestInTheReadyPosture) {
   RestWatch watch;
   const sim::Summary s = RunShipped("home", {}, watch.Options(4.0));

@@ -321,4 +321,9 @@ bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept {
 
 bool IsHeldUp(const WayToGoal& way) noexcept { return way.note.way == hal::Way::kPlan && way.held_ns > 0; }
 
+bool HasNoWay(const config::LawConfig& config, const WayToGoal& way) noexcept {
+  return way.note.way == hal::Way::kLaw && way.note.tries >= kMostTries &&
+         IsLonger(way.stalled_ns, config.unreachable_s);
+}
+
 }  // namespace fovea::control

@@ -104,6 +104,10 @@ void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& refer
 // True if limits hold the arm up on its plan. Real-time: yes.
 [[nodiscard]] bool IsHeldUp(const WayToGoal& way) noexcept;
 
+// True if limits have stopped the law short of the goal for servo.unreachable_s, and all plans were asked
+// for in vain. The law may then stand so near to its goal that its error tells nothing. Real-time: yes.
+[[nodiscard]] bool HasNoWay(const config::LawConfig& config, const WayToGoal& way) noexcept;
+
 // True if the last plan's end, `q_end`, is a good posture for a target at `p_BO` [m]. Real-time: yes.
 [[nodiscard]] bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept;
 

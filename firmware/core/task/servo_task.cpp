@@ -115,7 +115,8 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
                           (state_.mode.mode != hal::Mode::kBoot || IsOutside());
   mode_inputs.target_known = state_.prediction.known;
   mode_inputs.feature_age_ns = state_.prediction.age_ns;
-  mode_inputs.goal_unreachable = control::IsUnreachable(config_.law, state_.reach);
+  mode_inputs.goal_unreachable =
+      control::IsUnreachable(config_.law, state_.reach) || control::HasNoWay(config_.law, state_.way);
   mode_inputs.target_moved = control::HasMoved(state_.prediction.p_BO, state_.reach);
   mode_inputs.eye_doubted = state_.eye.doubted;
   mode_inputs.eye_suspected = state_.eye.suspected;

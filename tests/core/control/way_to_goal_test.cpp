@@ -206,12 +206,18 @@ TEST_F(WayToGoalTest, TriesForOneGoalAreLimited) {
   EXPECT_LE(answers, 10);
   EXPECT_EQ(way_.note.tries, answers);
   EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_TRUE(HasNoWay(config_.law, way_)) << "limits stopped the law for seconds";
+  limits_ = 0;
+  Choose(10 * kSecond);
+  EXPECT_FALSE(HasNoWay(config_.law, way_)) << "nothing stops the law";
+  limits_ = kBarriers;
   // Also near the goal, where limits still stop the law.
   const model::VecN start = reference_.q;
   model::VecN near = q_goal_;
   near[0] += 0.01;
   StandAt(near);
   EXPECT_EQ(TicksUntil(PlanEvent::kAsked), -1);
+  EXPECT_TRUE(HasNoWay(config_.law, way_));
   StandAt(start);
   EXPECT_EQ(TicksUntil(PlanEvent::kAsked), -1);
   // A goal that was reached is a new one afterwards.
@@ -219,6 +225,7 @@ TEST_F(WayToGoalTest, TriesForOneGoalAreLimited) {
   StandAt(q_goal_);
   Choose();
   EXPECT_EQ(way_.note.tries, 0);
+  EXPECT_FALSE(HasNoWay(config_.law, way_)) << "it is there";
   StandAt(far);
   AskForPlan();
   EXPECT_EQ(way_.note.tries, 1);

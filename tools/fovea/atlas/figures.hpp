@@ -17,7 +17,7 @@ namespace fovea::atlas {
 // A run ends once the goal has been kept for this time [s].
 inline constexpr double kSettledS = 2.0;
 // A run that does not settle lasts so long [s]. Some ways are 20 rad long.
-inline constexpr double kMostS = 15.0;
+inline constexpr double kMostS = 25.0;
 
 // Share of the runs that should converge, of those from whose start a way leads to the goal.
 inline constexpr double kGoalShare = 0.999;

@@ -85,8 +85,8 @@ ViewPair DrawViewPair(const Scene& scene, std::uint64_t seed, int index) {
     const Vec3 shift = pair.shift * DrawDirection(engine);
     pair.X_BC = Rounded(at_goal.X_BC * Pose{model::RotationOf(pair.turn * axis), shift});
     const Pose X_CO = pair.X_BC.Inverse() * pair.X_BO;
-    if (!checks.TargetAboveTable(pair.X_BO) || !checks.InPicture(X_CO) || !checks.InReach(X_CO) ||
-        !checks.StandsAtGoal(at_goal, pair.X_BO)) {
+    if (!checks.TargetAboveTable(pair.X_BO) || !checks.InPicture(X_CO) || !checks.InPicture(X_CO_star) ||
+        !checks.InReach(X_CO) || !checks.StandsAtGoal(at_goal, pair.X_BO)) {
       continue;
     }
     const auto is_allowed = [&](const VecN& q) { return !sampler.Refusal(checks.At(q), pair.X_BO); };
