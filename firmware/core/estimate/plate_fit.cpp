@@ -13,11 +13,13 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr double kCalibration = 2e-4;        // uncertainty of arm, camera and lens, in the normalised image
-constexpr double kStepM = 0.05;              // sizes that damp a step, so that it does not jump in directions
-constexpr double kStepRad = 0.05;            // that the corners do not determine
-constexpr double kHereM = 5e-5;              // a camera that has moved no further stands still: corners at
-constexpr double kHereRad = 1e-4;            // 0.25 m and further shift by no more than kCalibration
+constexpr double kCalibration = 2e-4;  // uncertainty of arm, camera and lens, in the normalised image
+constexpr double kStepM = 0.05;        // sizes that damp a step, so that it does not jump in directions
+constexpr double kStepRad = 0.05;      // that the corners do not determine
+constexpr double kHereM = 5e-5;        // a camera that has moved no further stands still: corners at
+constexpr double kHereRad = 1e-4;      // 0.25 m and further shift by no more than kCalibration
+constexpr double kTrembleM = 5e-4;     // a camera that moves no further between two frames trembles
+constexpr double kTrembleRad = 2e-3;
 constexpr double kSameAge = 1e-4;            // a camera at 0.5 m/s moves by 50 um [s]
 constexpr double kLeastAgeVariance = 1e-12;  // [s^2]
 constexpr int kFramesMost = 60;              // largest number in a mean
@@ -57,10 +59,35 @@ SeenCorners::Vector SlopeByAge(const Polygon& polygon, const PlateView& view,
   return slope;
 }
 
-// True if the camera has stayed where `view` was taken.
-bool IsFromHere(const PlateView& view, const model::Pose& X_CB) noexcept {
+// How far the camera of `view` is from `X_CB`.
+struct Moved {
+  double m;
+  double rad;
+  [[nodiscard]] bool IsWithin(double most_m, double most_rad) const noexcept {
+    return m < most_m && rad < most_rad;
+  }
+};
+Moved MovedFrom(const PlateView& view, const model::Pose& X_CB) noexcept {
   const model::Pose moved = X_CB * view.X_CB.Inverse();
-  return moved.p.norm() < kHereM && model::RotationVector(moved.R).norm() < kHereRad;
+  return {moved.p.norm(), model::RotationVector(moved.R).norm()};
+}
+
+// Moves `mean` to the camera of `newest`, as it sees a target at `X_BO`. False if a corner is not in front of
+// the camera.
+bool MoveTo(const Polygon& polygon, const PlateView& newest, const model::Pose& X_BO,
+            PlateView& mean) noexcept {
+  SeenCorners::Vector before;
+  SeenCorners::Vector now;
+  if (!ExpectCorners(polygon, mean.X_CB, X_BO, before) || !ExpectCorners(polygon, newest.X_CB, X_BO, now)) {
+    return false;
+  }
+  const int n = polygon.num_corners;
+  const int first = NearestFirst(mean.xy, before);
+  for (int i = 0; i < n; ++i) {
+    mean.xy.segment<2>(2 * ((first + i) % n)) += now.segment<2>(2 * i) - before.segment<2>(2 * i);
+  }
+  mean.X_CB = newest.X_CB;
+  return true;
 }
 
 // Makes `mean` the mean of itself and of `newest`, taken from the same place.
@@ -72,6 +99,7 @@ void Average(const PlateView& newest, PlateView& mean) noexcept {
     mean.xy.segment<2>(2 * i) +=
         (newest.xy.segment<2>(2 * ((first + i) % n)) - mean.xy.segment<2>(2 * i)) / mean.frames;
   }
+  mean.V_BC_C += (newest.V_BC_C - mean.V_BC_C) / mean.frames;
 }
 
 }  // namespace
@@ -93,8 +121,13 @@ void MoveToAge(double late, PlateView& view) noexcept {
   view.late = late;
 }
 
-void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept {
-  if (IsFromHere(mean, newest.X_CB)) {
+void TakeIntoMean(const Polygon& polygon, const PlateView& newest, const model::Pose* X_BO,
+                  PlateView& mean) noexcept {
+  MoveToAge(newest.late, mean);
+  const Moved moved = MovedFrom(mean, newest.X_CB);
+  const bool trembles =
+      X_BO != nullptr && moved.IsWithin(kTrembleM, kTrembleRad) && MoveTo(polygon, newest, *X_BO, mean);
+  if (trembles || moved.IsWithin(kHereM, kHereRad)) {
     Average(newest, mean);
   } else {
     mean = newest;

@@ -34,9 +34,12 @@ struct PlateView {
 // that only as the camera moves, and by then has views. Real-time: yes.
 void MoveToAge(double late, PlateView& view) noexcept;
 
-// Adds `newest`, a single frame, to the mean of the frames from the camera's present place. Restarts the mean
-// if the camera has moved. Real-time: yes.
-void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept;
+// Adds `newest`, a single frame, to the mean of the frames from the camera's present place. If the camera
+// trembles, the mean is first moved to where a target at `X_BO` would be seen now. Without this, the arm
+// would follow the noise of single frames, and so tremble on. Restarts the mean if the camera has moved
+// further, or at all if the pose is not sure (`X_BO` null). Real-time: yes.
+void TakeIntoMean(const features::Polygon& polygon, const PlateView& newest, const model::Pose* X_BO,
+                  PlateView& mean) noexcept;
 
 // The squared distances of the corners from their places at `X_BO`, in standard deviations, summed over
 // `views` and `newest`. Large if a corner is not in front of the camera. Real-time: yes.

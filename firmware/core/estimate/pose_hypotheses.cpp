@@ -88,15 +88,16 @@ void CatchSlip(const Polygon& polygon, const CornerView& view, PoseHypotheses& h
   hypotheses.slipped = false;
 }
 
-void BeginComparison(const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+void BeginComparison(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
   PlateComparison& comparison = hypotheses.comparison;
   comparison.runs = true;
   comparison.ended = false;
   comparison.pose = 0;  // the others begin as the last comparison left them: 0
   comparison.newest = SeePlate(view);
-  const PoseFilter& filter = hypotheses.plate.best().filter;
-  comparison.late_sigma = std::sqrt(std::max(filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0));
-  TakeIntoMean(comparison.newest, hypotheses.plate_mean);
+  const PlatePose& best = hypotheses.plate.best();
+  comparison.late_sigma = std::sqrt(std::max(best.filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0));
+  const bool is_sure = hypotheses.plate.count == 1;
+  TakeIntoMean(polygon, comparison.newest, is_sure ? &best.X_BO_still : nullptr, hypotheses.plate_mean);
   hypotheses.plate.views.Keep(comparison.newest);
 }
 
@@ -189,7 +190,7 @@ Verdict TakeView(const config::PredictConfig& config, const Polygon& polygon, co
   }
   CatchSlip(polygon, view, hypotheses);
   if (!hypotheses.comparison.runs) {
-    BeginComparison(view, hypotheses);
+    BeginComparison(polygon, view, hypotheses);
   }
   hypotheses.stamp_ns = view.stamp_ns;
   hypotheses.rejected_in_row = 0;

@@ -69,7 +69,7 @@ struct PoseHypotheses {
   HypothesisSet<PlatePose, hal::kMaxPoses, PlateView, 16> plate;
 
   // of a flat target
-  PlateView plate_mean;  // of the frames since the camera stands still
+  PlateView plate_mean;  // of the frames since the camera stands still or trembles
   PlateComparison comparison;
   bool slipped = false;  // the believed pose's filter has slipped to another pose
   int accepted = 0;      // views since the start, up to accepted_min

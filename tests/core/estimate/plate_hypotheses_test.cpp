@@ -270,6 +270,38 @@ TEST(PlateHypothesesTest, CreepingCameraDoesNotBiasTheMean) {
   }
 }
 
+// An arm that follows the noise of each frame trembles; if trembling made the frames' mean begin anew, it
+// would tremble on. So the pose changes little more from frame to frame than for a camera that stands still.
+TEST(PlateHypothesesTest, TremblingCameraDoesNotRestartTheMean) {
+  const config::PredictConfig config;
+  const Polygon triangle = features::MakeTriangle(features::kDefaultTriangle);
+  const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
+  const auto rms_step_deg = [&](double tremble_m, double tremble_rad) {
+    Draw draw(8);
+    PoseHypotheses hypotheses;
+    Pose before = flat;
+    double sum2 = 0.0;
+    for (int k = 0; k < 240; ++k) {
+      Pose X_BC = ComesOver(flat, k * kFrameS);
+      X_BC.p += tremble_m * draw.Vector();
+      X_BC.R = Turned(tremble_rad * draw.Vector()) * X_BC.R;
+      (void)TakeWhole(config, triangle, ViewOf(triangle, X_BC, flat, k, 0.1, draw), hypotheses);
+      const Pose X_BO = MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO;
+      sum2 += k >= 120 ? Between(X_BO.R, before.R).squaredNorm() : 0.0;
+      before = X_BO;
+    }
+    EXPECT_EQ(hypotheses.plate.stillness, Stillness::kStill);
+    return std::sqrt(sum2 / 120.0) * 180.0 / std::numbers::pi;
+  };
+  const double still = rms_step_deg(0.0, 0.0);
+  const double trembling = rms_step_deg(6e-5, 2e-4);
+  const double moving = rms_step_deg(1e-3, 3e-3);
+  std::cout << "from frame to frame: " << still << " deg rms, trembling " << trembling << ", moving "
+            << moving << "\n";
+  EXPECT_LT(trembling, 1.5 * still);
+  EXPECT_GT(moving, 5.0 * still);
+}
+
 // The pictures are 30 ms older than believed, and the servo finds that only as the camera moves. The views
 // that it has by then move to their true places.
 TEST(PlateHypothesesTest, ViewsOfWrongAgeDoNotPullThePose) {
