@@ -2,6 +2,7 @@
 #include "firmware/planning/planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/core/model/rotation.hpp"
@@ -28,10 +29,12 @@ constexpr double kGoalShare = 0.2;  // of the budget, after which a search for g
 // time.
 constexpr double kFirstSlice = 6000.0;
 constexpr double kMoreEachRound = 1.5;
-// Of the budget, after which a search that found no way keeps less room before lines of sight and steep
-// views.
+// A search that found no way keeps less room before lines of sight and steep views after this share of the
+// budget, or this much work.
 constexpr double kStrictShare = 0.5;
-constexpr int kShortenWork = 4000;  // at most, for making a path shorter
+constexpr double kStrictWork = 80'000.0;
+constexpr double kShortenWork = 4000.0;  // at most, for making a path shorter, or for a long one
+constexpr double kShortenEach = 1000.0;  // for each rad of it
 // If the path is this much longer than straight to the nearest goal, the search goes on for a quicker motion,
 // for this much work for each second of the motion found: a twentieth of that time with 2.5 us for a posture.
 constexpr double kRoundabout = 1.25;
@@ -39,13 +42,15 @@ constexpr double kWorkOfSecond = 20'000.0;
 constexpr int kMostMotions = 24;
 constexpr double kSpacing = 0.1;  // of control points [rad]
 constexpr int kLeastPoints = 5;
-constexpr int kMostPoints = 160;
+constexpr int kMostPoints = 256;
+// For a path that is not straightened: few points round its corners off, many keep to it.
+constexpr std::array<int, 2> kAsItIs{64, kMostPoints};
 constexpr int kSweeps = 12;    // of straightening
-constexpr int kSlowings = 24;  // of a motion that the guard would slow down
-constexpr double kSlower = 0.85;
+constexpr int kSlowings = 10;  // of a motion that the guard would slow down
+constexpr double kSlower = 0.75;
 
 double Spent(const PlanRequest& request, const Work& work) noexcept {
-  return static_cast<double>(request.budget - work.left());
+  return static_cast<double>(request.budget + Planner::kProofWork - work.left());
 }
 
 bool IsOffWhole(const PlanRequest& request) noexcept {
@@ -105,7 +110,8 @@ bool Planner::Parts::FindPath(const model::VecN& start, bool straight, std::int6
                         search.FindByTrees(space, start, to, round, draws, path, goal);
   work.Join(round);
   if (is_found) {
-    shortener.Shorten(space, kShortenWork, work, draws, path);
+    const double most = std::max(kShortenWork, kShortenEach * LengthOf(space, path));
+    shortener.Shorten(space, static_cast<int>(most), work, draws, path);
     turn = to[static_cast<std::size_t>(goal)].turn;
   }
   return is_found;
@@ -129,9 +135,11 @@ bool Planner::Parts::Smooth(Work& work, Plan& plan) noexcept {
   if (Time(work, plan)) {
     return true;
   }
-  corners.assign(path.begin(), path.end());
-  shortener.Resample(space, kMostPoints, corners);
-  return Time(work, plan);
+  return std::any_of(kAsItIs.begin(), kAsItIs.end(), [&](int points) {
+    corners.assign(path.begin(), path.end());
+    shortener.Resample(space, points, corners);
+    return Time(work, plan);
+  });
 }
 
 // Times `corners` into the plan and proves it.
@@ -173,9 +181,10 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
   int motions = 0;
   bool seek_goals = true;
   const auto is_enough = [&] {
-    return motions >= kMostMotions || Spent(request, work) > kWorkOfSecond * least;
+    return work.left() <= Planner::kProofWork || motions >= kMostMotions ||
+           Spent(request, work) > kWorkOfSecond * least;
   };
-  while (work.IsLeft() && !is_enough()) {
+  while (!is_enough()) {
     if (seek_goals) {
       const PlanOutcome found_goals = goals.Search(space, request.start.q, work, draws, plan.blocker);
       effort.goals = static_cast<int>(goals.goals().size());
@@ -184,7 +193,7 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
         if (found_goals == PlanOutcome::kGoalNotClear && space.AllowLessSight()) {
           continue;  // a goal beside a box is better than none
         }
-        if (static_cast<double>(work.left()) < (1.0 - kGoalShare) * static_cast<double>(request.budget)) {
+        if (Spent(request, work) > kGoalShare * static_cast<double>(request.budget)) {
           return outcome;
         }
         continue;
@@ -192,10 +201,12 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
     }
     static_cast<PlanHead&>(found) = plan;
     seek_goals = true;
-    if (!FindPath(request.start.q, motions == 0, static_cast<std::int64_t>(slice), work, draws, found.turn)) {
+    const std::int64_t most =
+        std::clamp<std::int64_t>(work.left() - Planner::kProofWork, 0, static_cast<std::int64_t>(slice));
+    if (!FindPath(request.start.q, motions == 0, most, work, draws, found.turn)) {
       outcome = outcome == PlanOutcome::kNotProved ? outcome : PlanOutcome::kNoPath;
       slice *= kMoreEachRound;
-      if (Spent(request, work) > kStrictShare * static_cast<double>(request.budget)) {
+      if (Spent(request, work) > std::min(kStrictShare * static_cast<double>(request.budget), kStrictWork)) {
         space.AllowNarrowPassages();  // better than none
       }
       continue;
@@ -249,14 +260,15 @@ void Planner::Compute(const PlanRequest& request, Plan& plan) noexcept {
     plan.p_BO[i] = request.X_BO.p[static_cast<Eigen::Index>(i)];
   }
   plan.q_BO = model::QuaternionOf(request.X_BO.R);
-  Work work(request.budget);
+  const std::int64_t most = is_horizon ? request.budget : request.budget + kProofWork;
+  Work work(most);
   if (is_horizon) {
     plan.outcome = parts.horizon.Search(request, work, plan);
   } else if (plan.outcome = parts.space.Begin(request, plan.blocker); plan.outcome == PlanOutcome::kFound) {
     Draws draws(request.seed);
     plan.outcome = parts.Search(request, work, draws, plan);
   }
-  parts.effort.work = request.budget - work.left();
+  parts.effort.work = most - work.left();
   if (!plan.IsFound()) {
     plan.num_points = 0;
     plan.period_s = 0.0;

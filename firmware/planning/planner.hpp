@@ -16,6 +16,10 @@ namespace fovea::planning {
 
 class Planner {
  public:
+  // Postures beyond the budget for a proved motion along a path that was found at its end: without it, the
+  // path is of no use.
+  static constexpr std::int64_t kProofWork = 60'000;
+
   // `config` must be one that the servo accepts, and outlive the planner. May throw std::bad_alloc.
   explicit Planner(const config::ServoConfig& config, const EyeReach& reach = {});
   ~Planner();
@@ -30,7 +34,7 @@ class Planner {
   };
 
   // Fills in `plan`: its outcome says whether there is one. Not real-time: up to about 5 us for each unit of
-  // the request's budget.
+  // the request's budget, and of kProofWork more if a path is found at its end.
   void Compute(const trajectory::PlanRequest& request, trajectory::Plan& plan) noexcept;
   [[nodiscard]] const Effort& effort() const noexcept;
 

@@ -30,8 +30,12 @@ constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular
 // the way, unless the start has less, and on the way if there is no other.
 constexpr double kEdgeOn = 0.1;
 constexpr double kSteepest = 0.35;
-constexpr double kLeastSteepest = 0.26;
-constexpr double kFacingRoom = 0.01;    // of this cosine, for a start that has less
+constexpr double kLeastSteepest = 0.30;
+constexpr double kFacingRoom = 0.01;  // of this cosine, for a start that has less
+// Largest absolute cosine of a corner in the picture, unless the start has more: 16.3 degrees. The detector
+// finds corners down to 15.
+constexpr double kSharpest = 0.96;
+constexpr double kSharpRoom = 0.002;    // for a start that has more
 constexpr double kReachRoom = 0.05;     // share of the detector's distances that a path keeps
 constexpr double kNearestPoint = 0.05;  // of the target's points [m]
 constexpr double kLookDamping = 1e-6;   // of J J^T
@@ -100,6 +104,7 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   Work none(1);
   Posture start;
   steepest_ = kEdgeOn;
+  sharpest_ = 1.0;
   reach_ = detector_;
   Place(q, none, start);
   q_start_ = q;
@@ -123,6 +128,7 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   reach_.nearest = std::min((1.0 + kReachRoom) * detector_.nearest, distance);
   reach_.farthest = std::max((1.0 - kReachRoom) * detector_.farthest, distance);
   steepest_ = std::max(kEdgeOn, std::min(kSteepest, CosineTo(start) - kFacingRoom));
+  sharpest_ = std::max(kSharpest, SharpestCorner(start) + kSharpRoom);
   start_room_ = std::min(kPictureRoom, PictureRoom(start));
   sight_room_ = std::min(kSightRoom, SightRoom(start, bodies));
   tilt_room_ = std::min(kTiltRoom, Tilt(start));
@@ -153,6 +159,7 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
   for (int i = 0; i < outline_.num_points; ++i) {
     faced = faced && (posture.X_CO * outline_.p_OP[static_cast<std::size_t>(i)]).z() > kNearestPoint;
   }
+  faced = faced && SharpestCorner(posture) <= sharpest_;
   posture.is_faced = faced;
   if (faced) {
     posture.picture = barriers::FieldOfViewBarriersOnPlan(
@@ -162,6 +169,24 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
 
 double PostureSpace::CosineTo(const Posture& posture) noexcept {
   return posture.X_CO.R.col(2).dot(posture.X_CO.p) / posture.X_CO.p.norm();
+}
+
+double PostureSpace::SharpestCorner(const Posture& posture) const noexcept {
+  double sharpest = 0.0;
+  if (config_.feature.SeesOrientation() && config_.guard.view.enabled) {
+    const int n = outline_.num_points;
+    const auto at = [&](int i) {
+      const model::Vec3 p_C = posture.X_CO * outline_.p_OP[static_cast<std::size_t>(i % n)];
+      return Eigen::Vector2d(p_C.head<2>() / p_C.z());
+    };
+    for (int i = 0; i < n; ++i) {
+      const Eigen::Vector2d corner = at(i + 1);
+      const Eigen::Vector2d a = at(i) - corner;
+      const Eigen::Vector2d b = at(i + 2) - corner;
+      sharpest = std::max(sharpest, std::fabs(a.dot(b)) / (a.norm() * b.norm()));
+    }
+  }
+  return sharpest;
 }
 
 double PostureSpace::PictureRoom(const Posture& posture) const noexcept {

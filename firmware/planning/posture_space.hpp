@@ -102,6 +102,9 @@ class PostureSpace {
 
   // Cosine between a flat target's normal and the line of sight.
   [[nodiscard]] static double CosineTo(const Posture& posture) noexcept;
+  // Largest absolute cosine of a flat target's corners, as the picture shows them; 0 without corners, or if
+  // the target need not stay in the picture.
+  [[nodiscard]] double SharpestCorner(const Posture& posture) const noexcept;
   [[nodiscard]] double Tilt(const Posture& posture) const noexcept;
   // A room before a bound that grows from `at_start` there to `at_last`.
   [[nodiscard]] double RoomAt(const model::VecN& q, double at_start, double at_last) const noexcept;
@@ -123,6 +126,7 @@ class PostureSpace {
   // What the proof uses instead of margin_ [m]: from a start nearer than that, the guard's proof of a stop's.
   std::array<double, kMostSolids> bound_{};
   double steepest_ = 0.0;  // least CosineTo
+  double sharpest_ = 1.0;  // most SharpestCorner
   model::VecN q_start_;
   double start_room_ = 0.0;  // before the picture's edges at the start, normalised
   double sight_room_ = 0.0;  // [m]

@@ -7,7 +7,7 @@
 namespace fovea::planning {
 namespace {
 
-constexpr int kTries = 120;
+constexpr double kTries = 0.03;    // for each unit of work
 constexpr double kShorter = 0.98;  // a replacement counts if its length is below this share
 constexpr double kApart = 0.3;     // places nearer than this along the path are not joined [rad]
 constexpr int kMostSteps = 60;     // of a motion that keeps the target in the picture
@@ -71,7 +71,7 @@ bool PathShortener::GoInView(const PostureSpace& space, const model::VecN& from,
 void PathShortener::Shorten(const PostureSpace& space, int most_work, Work& work, Draws& draws,
                             Polyline& path) noexcept {
   const std::int64_t keep = std::max<std::int64_t>(work.left() - most_work, 0);
-  for (int attempt = 0; attempt < kTries && work.left() > keep && path.size() > 2; ++attempt) {
+  for (int attempt = 0; attempt < kTries * most_work && work.left() > keep && path.size() > 2; ++attempt) {
     const double length = LengthOf(space, path);
     double low = attempt == 0 ? 0.0 : draws.Uniform(0.0, length);
     double high = attempt == 0 ? length : draws.Uniform(0.0, length);
