@@ -33,8 +33,9 @@ constexpr double kMoreEachRound = 1.5;
 // budget, or this much work.
 constexpr double kStrictShare = 0.5;
 constexpr double kStrictWork = 80'000.0;
-constexpr double kShortenWork = 4000.0;  // at most, for making a path shorter, or for a long one
-constexpr double kShortenEach = 1000.0;  // for each rad of it
+// For making a path shorter: the larger of these.
+constexpr double kShortenWork = 4000.0;
+constexpr double kShortenWorkOfRad = 1000.0;
 // If the path is this much longer than straight to the nearest goal, the search goes on for a quicker motion,
 // for this much work for each second of the motion found: a twentieth of that time with 2.5 us for a posture.
 constexpr double kRoundabout = 1.25;
@@ -110,7 +111,7 @@ bool Planner::Parts::FindPath(const model::VecN& start, bool straight, std::int6
                         search.FindByTrees(space, start, to, round, draws, path, goal);
   work.Join(round);
   if (is_found) {
-    const double most = std::max(kShortenWork, kShortenEach * LengthOf(space, path));
+    const double most = std::max(kShortenWork, kShortenWorkOfRad * LengthOf(space, path));
     shortener.Shorten(space, static_cast<int>(most), work, draws, path);
     turn = to[static_cast<std::size_t>(goal)].turn;
   }
