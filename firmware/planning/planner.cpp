@@ -191,8 +191,8 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
       effort.goals = static_cast<int>(goals.goals().size());
       if (found_goals != PlanOutcome::kFound) {
         outcome = found_goals;
-        if (found_goals == PlanOutcome::kGoalNotClear && space.AllowLessSight()) {
-          continue;  // a goal beside a box is better than none
+        if (space.AllowTightGoals()) {
+          continue;  // a goal beside a bound is better than none
         }
         if (Spent(request, work) > kGoalShare * static_cast<double>(request.budget)) {
           return outcome;

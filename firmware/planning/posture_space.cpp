@@ -24,8 +24,9 @@ constexpr double kInward = 0.3;
 constexpr double kOutside = 0.05;    // a start with the target further past the picture's bound is refused
 constexpr double kTiltRoom = 0.02;   // before a disc's largest tilt, cosine
 constexpr double kJointRoom = 0.02;  // before the ends of a joint's range [rad, m]
-constexpr double kGoalJointRoom = 0.06;   // the same at the goal
-constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular value
+constexpr double kGoalJointRoom = 0.06;        // the same at the goal; kJointRoom if there is no other
+constexpr double kSingularityRoom = 1.5;       // times the guard's smallest singular value, at the goal,
+constexpr double kLeastSingularityRoom = 1.1;  // or if there is no other
 // Smallest cosine between a flat target's normal and the line of sight: at a start that is planned from, on
 // the way, unless the start has less, and on the way if there is no other.
 constexpr double kEdgeOn = 0.1;
@@ -92,6 +93,8 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   normal_B_ = request.normal_B;
   const model::VecN& q = request.start.q;
   range_ = RangeOf(config_, kJointRoom);
+  goal_range_ = RangeOf(config_, kGoalJointRoom);
+  singularity_room_ = kSingularityRoom;
   for (int i = 0; i < q.size(); ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
     if (q[i] < joint.q_min || q[i] > joint.q_max) {
@@ -135,10 +138,12 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   return PlanOutcome::kFound;
 }
 
-bool PostureSpace::AllowLessSight() noexcept {
-  const bool is_less = sight_room_ > kLeastSightRoom;
+bool PostureSpace::AllowTightGoals() noexcept {
+  const bool is_new = singularity_room_ > kLeastSingularityRoom;
   sight_room_ = std::min(sight_room_, kLeastSightRoom);
-  return is_less;
+  singularity_room_ = kLeastSingularityRoom;
+  goal_range_ = RangeOf(config_, kJointRoom);
+  return is_new;
 }
 
 void PostureSpace::AllowNarrowPassages() noexcept {
@@ -262,7 +267,7 @@ bool PostureSpace::IsFree(const model::VecN& q, Work& work) const noexcept {
 bool PostureSpace::IsRegular(const Posture& posture) const noexcept {
   barriers::Singularity singularity;
   barriers::ComputeSingularity(posture.J_C, barriers::SingularityConfig{}.length, singularity);
-  return singularity.sigma > kSingularityRoom * config_.guard.singularity_min;
+  return singularity.sigma > singularity_room_ * config_.guard.singularity_min;
 }
 
 model::VecN PostureSpace::LookStep(const Posture& posture, const model::Vec3& d_C,

@@ -54,8 +54,9 @@ class PostureSpace {
   [[nodiscard]] trajectory::PlanOutcome Begin(const trajectory::PlanRequest& request,
                                               hal::Limit& blocker) noexcept;
 
-  // From here to the next Begin, lines of sight need less room. False if they already do.
-  bool AllowLessSight() noexcept;
+  // From here to the next Begin, a goal needs less room before joints' ends, a singularity and, as the path
+  // to it, lines of sight. False if it already does.
+  bool AllowTightGoals() noexcept;
   // From here to the next Begin, a path needs less room before lines of sight, and may show a flat target
   // from a steeper side.
   void AllowNarrowPassages() noexcept;
@@ -133,6 +134,7 @@ class PostureSpace {
   double tilt_room_ = 0.0;   // at the start, cosine
   Range range_;
   Range goal_range_;
+  double singularity_room_ = 0.0;  // times the guard's smallest singular value
   model::Pose X_BO_;
   model::Vec3 normal_B_ = model::Vec3::Zero();
 };

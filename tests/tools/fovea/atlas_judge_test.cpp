@@ -53,6 +53,20 @@ TEST(AtlasJudge, FindsTheWaysThatExistTheSameWithAnyNumberOfJobs) {
   EXPECT_EQ(InWords(judgements.at(3)), "no way found in 0 draws from 0 goal postures");
 }
 
+// With the square there, the camera has to stand where the arm is stretched out: the servo stops before.
+TEST(AtlasJudge, AGoalWithoutARegularPostureHasNoWay) {
+  Scene scene = test::AtlasScene("panda", "square");
+  Start start;
+  start.q = {2.0567, -0.8942, -2.1353, -0.8242, -1.2678, 0.4775, -1.2573};
+  start.p_BO = {-0.0045, -0.4121, 0.1521};
+  start.rpy_deg = {-130.75, 46.53, 26.59};
+  const Judgement bounded = JudgeStart(scene, start);
+  EXPECT_EQ(InWords(bounded), "no way found in 0 draws from 0 goal postures");
+  scene.servo.guard.singularity_min = 0.0;
+  const Judgement free = JudgeStart(scene, start, {.draws = 0});
+  EXPECT_GT(free.goals, 0) << "without that bound there are some";
+}
+
 TEST(AtlasJudge, EffortBoundsTheSearch) {
   const Scene scene = test::AtlasScene("panda", "square");
   const Start start = Sampler(scene).Draw(1, 0);

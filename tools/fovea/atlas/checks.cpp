@@ -2,11 +2,14 @@
 #include "tools/fovea/atlas/checks.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
+#include "firmware/core/barriers/singularity.hpp"
+#include "firmware/core/model/kinematics.hpp"
 #include "tools/fovea/atlas/bench.hpp"
 
 namespace fovea::atlas {
@@ -299,9 +302,19 @@ bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO) c
   return BenchInTheWay(posture, X_BO, kAtEnds);
 }
 
+// The servo's bound, by the singular values of all of the Jacobian.
+bool StartChecks::IsRegular(const StartPosture& posture) const {
+  const config::ServoConfig& servo = scene_.servo;
+  model::Mat6N J;
+  model::ComputeJacobian(servo.arm, posture.poses, servo.X_EC, J);
+  J.topRows<3>() /= barriers::SingularityConfig{}.length;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(J)};
+  return svd.singularValues().minCoeff() > servo.guard.singularity_min;
+}
+
 bool StartChecks::StandsAtGoal(const StartPosture& posture, const Pose& X_BO) const {
-  return InsideBarrier(posture) && ClearOfSolids(posture) && !ArmInTheWay(posture, X_BO) &&
-         !BenchInTheWay(posture, X_BO);
+  return IsRegular(posture) && InsideBarrier(posture) && ClearOfSolids(posture) &&
+         !ArmInTheWay(posture, X_BO) && !BenchInTheWay(posture, X_BO);
 }
 
 bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO) const {

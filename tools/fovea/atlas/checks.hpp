@@ -36,7 +36,8 @@ class StartChecks {
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when a thing or a box on the bench is in the target or in a line of sight.
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
-  // True when a posture that reaches the goal meets all these conditions.
+  // True when a posture that reaches the goal meets all these conditions, and is not so near to a singular
+  // one that the servo would not go there.
   [[nodiscard]] bool StandsAtGoal(const StartPosture& posture, const model::Pose& X_BO) const;
 
   // True when a posture on a path meets all conditions. The bounds are less strict than at its ends: those
@@ -64,6 +65,7 @@ class StartChecks {
                                  const Clear& clear) const;
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO,
                                    const Clear& clear) const;
+  [[nodiscard]] bool IsRegular(const StartPosture& posture) const;
   [[nodiscard]] bool IsHidden(const StartPosture& posture, const model::Pose& X_BO) const;
 
   Scene scene_;
