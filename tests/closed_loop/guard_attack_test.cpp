@@ -91,7 +91,7 @@ TEST(GuardAttack, RunawayTargetDoesNotDrawTheHandAcrossTheBoundary) {
                              std::clamp(t_s - 0.6, 0.0, 1.0) * velocity.normalized());
     };
     GuardBench bench(setup);
-    bench.RunUntil(2.5);
+    bench.RunUntil(3.5);
     furthest = std::max(furthest, bench.figures().radius);
     reached += bench.figures().radius > kBoundary - 0.02 ? 1 : 0;
     ExpectInsideLimits(bench);
