@@ -25,6 +25,7 @@ struct PlanResidual {
   double picture_px = HUGE_VAL;  // room before the picture's bound
   double sight = HUGE_VAL;       // room before the guard's clearance [m]
   double facing = HUGE_VAL;      // cosine to a flat target's normal, more than is needed for its detection
+  double corner_deg = HUGE_VAL;  // a corner's angle in the picture, more than is needed for its detection
   double tilt = HUGE_VAL;        // room before a disc's largest tilt, or its tilt at the start: cosine
   double feature = 0.0;          // error at the end
   double start = 0.0;            // distance of the first posture from the start's [rad]
@@ -39,6 +40,7 @@ struct PlanResidual {
     picture_px = std::min(picture_px, other.picture_px);
     sight = std::min(sight, other.sight);
     facing = std::min(facing, other.facing);
+    corner_deg = std::min(corner_deg, other.corner_deg);
     tilt = std::min(tilt, other.tilt);
     feature = std::max(feature, other.feature);
     start = std::max(start, other.start);
@@ -114,6 +116,9 @@ class PlanWatch {
       constexpr double kDetected = 0.35;  // the planner's own bound; a start may have less
       residual.facing =
           std::min(residual.facing, FacingAt(q) - std::min(kDetected, FacingAt(request_.start.q)));
+      constexpr double kCornerDeg = 16.0;
+      residual.corner_deg =
+          std::min(residual.corner_deg, CornerDegAt(q) - std::min(kCornerDeg, CornerDegAt(request_.start.q)));
     }
     const vision::Intrinsics camera = BallCamera();
     const config::ViewConfig& view = config_.guard.view;
@@ -134,6 +139,26 @@ class PlanWatch {
     model::ComputePoses(config_.arm, q, poses);
     const model::Vec3 ray = request_.X_BO.p - (poses.X_BE * config_.X_EC).p;
     return request_.normal_B.isZero() ? 1.0 : request_.normal_B.dot(ray) / ray.norm();
+  }
+
+  // How far the corner nearest to 0 or 180 degrees is from them, in the picture.
+  [[nodiscard]] double CornerDegAt(const model::VecN& q) const {
+    model::ArmPoses poses;
+    model::ComputePoses(config_.arm, q, poses);
+    const model::Pose X_CO = (poses.X_BE * config_.X_EC).Inverse() * request_.X_BO;
+    const features::TargetOutline outline = config_.feature.Outline();
+    const auto at = [&](int i) {
+      const model::Vec3 p = X_CO * outline.p_OP[static_cast<std::size_t>(i % outline.num_points)];
+      return Eigen::Vector2d(p.x() / p.z(), p.y() / p.z());
+    };
+    double least = 90.0;
+    for (int i = 0; i < outline.num_points; ++i) {
+      const Eigen::Vector2d a = at(i) - at(i + 1);
+      const Eigen::Vector2d b = at(i + 2) - at(i + 1);
+      const double angle = std::atan2(std::fabs(a.x() * b.y() - a.y() * b.x()), std::fabs(a.dot(b)));
+      least = std::min(least, angle * 180.0 / model::kPi);
+    }
+    return least;
   }
 
   // The cosine between a flat target's normal and the line of sight.

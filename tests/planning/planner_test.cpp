@@ -57,10 +57,11 @@ TEST_P(PlannerOn, EveryPlanKeepsAllLimitsAndReachesTheGoal) {
   std::printf(
       "%d of %d, %d of them after half of the budget: velocity %.3f, acceleration %.3f, jerk %.3f of "
       "the limits; room %.1f mm, picture %.1f px, "
-      "sight %.1f mm, facing %.4f, tilt %.4f; at the end %.1e; guard held %d ticks, off %.1e rad\n",
+      "sight %.1f mm, facing %.4f, corners %.2f deg, tilt %.4f; at the end %.1e; guard held %d ticks, off "
+      "%.1e rad\n",
       found, kStarts, narrow, worst.velocity, worst.acceleration, worst.jerk, 1e3 * worst.solid,
-      worst.picture_px, 1e3 * worst.sight, worst.facing, worst.tilt, worst.feature, worst.held_ticks,
-      worst.guarded);
+      worst.picture_px, 1e3 * worst.sight, worst.facing, worst.corner_deg, worst.tilt, worst.feature,
+      worst.held_ticks, worst.guarded);
   EXPECT_GE(found, kStarts / 4);
   EXPECT_LE(worst.start, 1e-12);
   EXPECT_LE(worst.velocity, 1.0);
@@ -70,6 +71,7 @@ TEST_P(PlannerOn, EveryPlanKeepsAllLimitsAndReachesTheGoal) {
   EXPECT_GE(worst.picture_px, 13.0);  // of 16.6 at the postures that are tested, or what the start has
   EXPECT_GE(worst.sight, 0.002);      // of 0.01, or of 0.003 if no goal has more
   EXPECT_GE(worst.facing, -0.011);    // 0.01 of it from a start that has less than is needed
+  EXPECT_GE(worst.corner_deg, 0.0);   // of 0.26: no start here has less than is needed
   EXPECT_GE(worst.tilt, -1e-3);       // at the start itself it is 0
   EXPECT_LE(worst.feature, 1e-6);
   EXPECT_LE(worst.guarded, 2e-3);  // half a tick's motion
