@@ -149,7 +149,7 @@ bool Planner::Parts::Time(Work& work, Plan& plan) noexcept {
   speed.Begin(space, smooth, work);
   for (int slowing = 0; slowing < kSlowings && work.IsLeft(); ++slowing) {
     const double duration = speed.Run();
-    if (!std::isfinite(duration)) {
+    if (!(duration < Plan::kMostDuration)) {
       return false;
     }
     TimePath(smooth, speed, duration, limits, plan);
@@ -158,14 +158,14 @@ bool Planner::Parts::Time(Work& work, Plan& plan) noexcept {
     bool passes = true;
     std::size_t cell = 0;
     double t = 0.0;
-    while (t < plan.Duration()) {
+    while (t < plan.Duration() && work.IsLeft()) {
       if (!IsLetPass(space, plan, t, known, work)) {
         passes = false;
         speed.SlowDown(speed.UAt(t - lag, cell), kSlower);
       }
       t += kGuardStep;
     }
-    if (passes) {
+    if (passes && work.IsLeft()) {
       return FirstBlocked(space, plan, work) < 0.0;
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/horizon.hpp"
 
+#include "firmware/core/control/count_tick.hpp"
 #include "firmware/core/control/visual_laws.hpp"
 
 namespace fovea::control {

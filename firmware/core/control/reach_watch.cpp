@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/reach_watch.hpp"
 
+#include "firmware/core/control/count_tick.hpp"
 #include "firmware/core/control/goal_size.hpp"
 #include "firmware/core/control/way_to_goal.hpp"
 #include "fovea/hal/types.hpp"

@@ -13,6 +13,7 @@ namespace fovea::control {
 struct ReachWatch {
   std::int64_t blocked_ns = 0;                         // blocked time less unblocked time, at least 0
   model::Vec3 p_BO_unreachable = model::Vec3::Zero();  // the target's place when it was unreachable [m]
+  bool planner_was_late = false;                       // the planner did not answer then
 };
 
 // True if barriers among `limits` kept a tick of the visual law from its goal: `dq` [num_joints], the joint

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "firmware/core/control/count_tick.hpp"
 #include "firmware/core/features/equal_turn.hpp"
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -32,7 +33,7 @@ constexpr double kCareful = 0.25;                     // pace of the law while i
 constexpr double kCarefulS = 1.5;                     // for so long at most
 constexpr double kSlowingS = 0.4;                     // from the law's full pace to rest
 constexpr double kSlow = 0.1;                         // a joint this slow is stopped at once [rad/s, m/s]
-constexpr double kWaitS = 1.5;                        // for a plan
+constexpr double kWaitS = 2.5;                        // for a plan
 constexpr double kWaitLateS = 0.1;                    // if the last one did not come in time
 constexpr std::int64_t kAgainNs = hal::kNsPerSecond;  // between new plans because the target moved
 
@@ -78,7 +79,8 @@ bool MayPlanFor(const config::ServoConfig& config, const WaySight& sight, const 
 }
 
 void NoteIdle(const WaySight& sight, const Off& off, WayToGoal& way) noexcept {
-  if (off.turn < kThereRad && off.shift < kThereM) {
+  way.is_there = off.turn < kThereRad && off.shift < kThereM;
+  if (way.is_there) {
     way.stalled_ns = 0;
     way.note.tries = 0;
   } else if (off.Both() < kNearer * way.least_off) {
@@ -187,6 +189,7 @@ void AwaitPlan(const config::ServoConfig& config, const WaySight& sight, const P
   if (!sight.has_answer) {
     if (IsLonger(sight.now_ns - way.asked_ns, way.planner_late ? kWaitLateS : kWaitS)) {
       way.planner_late = true;
+      --way.note.tries;  // nobody has tried
       Change(Way::kLaw, PlanEvent::kLate, sight.now_ns, way);
     }
     return;
@@ -276,10 +279,6 @@ void WayToGoal::Restart() noexcept {
   planner_late = late;
 }
 
-void CountTick(bool holds, std::int64_t& ns) noexcept {
-  ns = std::max<std::int64_t>(ns + (holds ? hal::kTickPeriodNs : -hal::kTickPeriodNs), 0);
-}
-
 void ChooseWay(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
                WayToGoal& way) noexcept {
   way.note.event = PlanEvent::kNone;
@@ -324,6 +323,14 @@ bool IsHeldUp(const WayToGoal& way) noexcept { return way.note.way == hal::Way::
 bool HasNoWay(const config::LawConfig& config, const WayToGoal& way) noexcept {
   return way.note.way == hal::Way::kLaw && way.note.tries >= kMostTries &&
          IsLonger(way.stalled_ns, config.unreachable_s);
+}
+
+bool MayFindAWay(const config::ServoConfig& config, const WayToGoal& way) noexcept {
+  if (!trajectory::IsPlannable(config)) {
+    return false;
+  }
+  const bool may_ask = way.note.tries < kMostTries && !way.is_there && !way.planner_late;
+  return way.note.way != Way::kLaw || may_ask;
 }
 
 }  // namespace fovea::control

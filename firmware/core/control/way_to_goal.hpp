@@ -29,6 +29,7 @@
 
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/control/resolve_damped.hpp"
+#include "firmware/core/control/swing.hpp"
 #include "firmware/core/trajectory/plan.hpp"
 #include "firmware/core/trajectory/reference.hpp"
 #include "fovea/hal/events.hpp"
@@ -42,7 +43,8 @@ struct WayToGoal {
   bool turn_known = false;      // it was chosen since Track began
   bool is_fresh = true;         // no plan was asked for since the goal was last near
   bool is_new_goal = true;      // the goal was near since the last plan for a far one
-  bool planner_late = false;    // the last request had no answer in time
+  bool is_there = false;        // law: so near to its goal that no plan would help
+  bool planner_late = false;    // the last request had no answer in time, and none has come since
   bool keeps_posture = false;   // q_end reaches the goal: the law is pulled towards it
   std::int64_t since_ns = 0;    // time of the last change of the way, which starts smoothly
   std::int64_t asked_ns = -1;   // when the last plan or horizon was asked for; -1: none since the way changed
@@ -55,6 +57,7 @@ struct WayToGoal {
   double least_off = HUGE_VAL;   // law: smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
   double t = 0.0;                // plan: time along it [s]
   double trust = 0.0;            // in the eye, 0 to 1: how fast a plan is followed
+  Swing swing;                   // law: about a disc whose two poses are not told apart
   model::VecN shift;             // plan: of its end, for the present estimate [num_joints]
   model::VecN q_end;             // of the last plan [num_joints]
   model::Pose X_BC_end;          // of the camera at q_end
@@ -108,6 +111,10 @@ void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& refer
 // for in vain. The law may then stand so near to its goal that its error tells nothing. Real-time: yes.
 [[nodiscard]] bool HasNoWay(const config::LawConfig& config, const WayToGoal& way) noexcept;
 
+// True if a plan is under way, awaited, or may still be asked for: then limits that stop the law do not make
+// the goal unreachable yet. False while the planner does not answer. Real-time: yes.
+[[nodiscard]] bool MayFindAWay(const config::ServoConfig& config, const WayToGoal& way) noexcept;
+
 // True if the last plan's end, `q_end`, is a good posture for a target at `p_BO` [m]. Real-time: yes.
 [[nodiscard]] bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept;
 
@@ -129,8 +136,5 @@ void Ask(const WaySight& sight, WayToGoal& way) noexcept;
 inline constexpr hal::LimitSet kBarriers =
     hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace) |
     hal::Bit(hal::Limit::kObstacle) | hal::Bit(hal::Limit::kSingularity) | hal::Bit(hal::Limit::kFieldOfView);
-
-// Adds a tick to `ns` if `holds`, else subtracts one, but not below 0. Real-time: yes.
-void CountTick(bool holds, std::int64_t& ns) noexcept;
 
 }  // namespace fovea::control

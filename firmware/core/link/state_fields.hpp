@@ -76,6 +76,7 @@ void ModeFields(Archive& a, T& s) noexcept {
   a(s.track_since_ns);
   a(s.reach.blocked_ns);
   Entries(a, s.reach.p_BO_unreachable);
+  a(s.reach.planner_was_late);
   Entries(a, s.R_BC_held);
 }
 
@@ -88,6 +89,7 @@ void WayFields(Archive& a, T& w) noexcept {
   a(w.turn_known);
   a(w.is_fresh);
   a(w.is_new_goal);
+  a(w.is_there);
   a(w.planner_late);
   a(w.keeps_posture);
   a(w.since_ns);
@@ -101,6 +103,10 @@ void WayFields(Archive& a, T& w) noexcept {
   a(w.least_off);
   a(w.t);
   a(w.trust);
+  a(w.swing.angle);
+  a(w.swing.pace);
+  a(w.swing.side);
+  a(w.swing.barred_ns);
   SizedEntries(a, w.shift);
   SizedEntries(a, w.q_end);
   Entries(a, w.p_BO_end);

@@ -32,7 +32,7 @@ constexpr std::array kEdges{
     From(Mode::kBoot,   "the arm is sound and at rest, track is requested", [](const F& f) { return f.ready && f.asked; }, Mode::kHold, HoldReason::kNoTarget),
     From(Mode::kBoot,   "the arm is sound and at rest",       [](const F& f) { return f.ready; },            Mode::kHold, HoldReason::kNotAsked),
 
-    From(Mode::kHold,   "goal unreachable, the target has not moved", [](const F& f) { return f.asked && f.hold_reason == HoldReason::kGoalUnreachable && !f.moved; }, Mode::kHold, HoldReason::kGoalUnreachable),
+    From(Mode::kHold,   "goal unreachable, no reason to try again", [](const F& f) { return f.asked && f.hold_reason == HoldReason::kGoalUnreachable && !f.again; }, Mode::kHold, HoldReason::kGoalUnreachable),
     From(Mode::kHold,   "track is requested, the target seen", [](const F& f) { return f.asked && f.fresh; }, Mode::kTrack),
     From(Mode::kHold,   "a motion is commanded",              [](const F& f) { return !f.asked && f.motion; }, Mode::kMove),
     From(Mode::kHold,   "track is requested, after a motion or none", [](const F& f) { return f.asked && f.hold_reason != HoldReason::kTargetLost; }, Mode::kHold, HoldReason::kNoTarget),
@@ -77,7 +77,7 @@ ModeFacts FactsOf(const config::PredictConfig& config, const ModeInputs& inputs,
   f.fresh = inputs.target_known && inputs.feature_age_ns <= Ns(config.stale_s);
   f.lost = !inputs.target_known || inputs.feature_age_ns > Ns(config.coast_s);
   f.unreachable = inputs.goal_unreachable;
-  f.moved = inputs.target_moved;
+  f.again = inputs.may_try_again;
   f.doubted = inputs.eye_doubted || (f.lost && inputs.eye_suspected);
   f.motion = inputs.motion_asked && !state.motion_barred;
   f.refused = inputs.motion_refused;

@@ -26,7 +26,7 @@ struct ModeInputs {
   bool target_known = false;
   std::int64_t feature_age_ns = 0;       // of the last accepted measurement
   bool goal_unreachable = false;         // limits kept the arm from the goal for too long
-  bool target_moved = false;             // far enough from where it was unreachable to try again
+  bool may_try_again = false;            // the target has moved, or the planner answers again
   bool eye_doubted = false;              // the eye cannot steer the arm
   bool eye_suspected = false;            // the same, if it has lost the target
   bool motion_asked = false;             // a motion is commanded, or not yet finished
@@ -53,7 +53,7 @@ struct ModeFacts {
   bool fresh;  // the target was seen recently
   bool lost;   // the target was not seen for too long
   bool unreachable;
-  bool moved;
+  bool again;  // another try for a goal that was unreachable
   bool doubted;
   bool motion;  // a motion may move the arm
   bool refused;

@@ -55,11 +55,16 @@ bool HasTunedGain(const TuningState& tuning) noexcept {
 
 }  // namespace
 
-// Takes a part of the plan that was asked for. All others are dropped: no plan changes under the arm.
+// Takes a part of the plan that was asked for. All others are dropped: no plan changes under the arm. But one
+// that comes too late shows that the planner is there.
 void ServoTask::TakePlan(const trajectory::PlanPart& part) noexcept {
-  const bool awaited = state_.way.asked_ns >= 0 && part.head.stamp_ns == state_.way.asked_ns;
-  if (part.IsThere() && awaited) {
+  if (!part.IsThere()) {
+    return;
+  }
+  if (state_.way.asked_ns >= 0 && part.head.stamp_ns == state_.way.asked_ns) {
     static_cast<void>(state_.plans.Take(part));
+  } else {
+    state_.way.planner_late = false;
   }
 }
 
@@ -87,6 +92,28 @@ void ServoTask::ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept {
     law.q_posture = model::ToArray(state_.way.q_end);
   }
   control::CommandJoints(law, config_.arm, state_.feature, joints, state_.law);
+  SwingAboutADisc();
+}
+
+// Adds a swing to the law's wish while a disc's two poses are not told apart near the goal.
+void ServoTask::SwingAboutADisc() noexcept {
+  const auto& disc = state_.predict.hypotheses.disc;
+  const bool steers = state_.mode.mode == hal::Mode::kTrack && state_.way.note.way == hal::Way::kLaw;
+  if (!steers || disc.count == 0 || disc.stillness != estimate::Stillness::kUnknown) {
+    return;
+  }
+  const control::SwungDisc swung{
+      .radius = config_.feature.radius,
+      .p_CO = state_.prediction.seen.X_CO.p,
+      .p_CO_star = config_.feature.p_CO_C_star,
+      .v_BO = state_.prediction.v_BO,
+      .normal_C = state_.X_BC.R.transpose() * disc.best().normal_B,
+      .J_C = state_.J_C,
+      .limits = state_.limits & control::kBarriers,
+  };
+  if (control::IsWorthASwing(swung, state_.way.swing)) {
+    control::AddSwing(swung, state_.way.swing, state_.law.task);
+  }
 }
 
 // True if the joints follow a plan or a horizon.

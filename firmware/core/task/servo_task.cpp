@@ -116,8 +116,10 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   mode_inputs.target_known = state_.prediction.known;
   mode_inputs.feature_age_ns = state_.prediction.age_ns;
   mode_inputs.goal_unreachable =
-      control::IsUnreachable(config_.law, state_.reach) || control::HasNoWay(config_.law, state_.way);
-  mode_inputs.target_moved = control::HasMoved(state_.prediction.p_BO, state_.reach);
+      control::HasNoWay(config_.law, state_.way) ||
+      (control::IsUnreachable(config_.law, state_.reach) && !control::MayFindAWay(config_, state_.way));
+  mode_inputs.may_try_again = control::HasMoved(state_.prediction.p_BO, state_.reach) ||
+                              (state_.reach.planner_was_late && !state_.way.planner_late);
   mode_inputs.eye_doubted = state_.eye.doubted;
   mode_inputs.eye_suspected = state_.eye.suspected;
   moves::NoteAsked(config_, inputs.motion, state_.motion);

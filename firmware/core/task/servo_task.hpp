@@ -81,6 +81,7 @@ class ServoTask final : public ServoStep {
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept;
   [[nodiscard]] bool ComputeFeature() noexcept;
+  void SwingAboutADisc() noexcept;
   void ChooseTheWay() noexcept;
   [[nodiscard]] bool IsPlanned() const noexcept;
   void TakePlan(const trajectory::PlanPart& part) noexcept;

@@ -107,7 +107,7 @@ TEST_F(ModesTest, UnreachableGoalHoldsUntilTheTargetMoves) {
     EXPECT_EQ(last_.hold_reason, HoldReason::kGoalUnreachable);
     EXPECT_EQ(After(last_, Seen(kFresh)), Mode::kHold);
     ModeInputs moved = Seen(kFresh);
-    moved.target_moved = true;
+    moved.may_try_again = true;
     EXPECT_EQ(After(last_, moved), Mode::kTrack);
   }
 }
@@ -225,7 +225,7 @@ std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
           inputs.arm_ready = (bits & 1U) != 0;
           inputs.target_known = (bits & 2U) != 0;
           inputs.goal_unreachable = (bits & 4U) != 0;
-          inputs.target_moved = (bits & 8U) != 0;
+          inputs.may_try_again = (bits & 8U) != 0;
           inputs.motion_asked = (bits & 16U) != 0;
           inputs.motion_refused = (bits & 32U) != 0;
           inputs.eye_doubted = (bits & 64U) != 0;
