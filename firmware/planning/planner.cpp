@@ -33,6 +33,8 @@ constexpr double kMoreEachRound = 1.5;
 // budget, or this much work.
 constexpr double kStrictShare = 0.5;
 constexpr double kStrictWork = 80'000.0;
+constexpr double kWideWork =
+    240'000.0;  // shows a target from very steep sides after this: in no first search
 // For making a path shorter: the larger of these.
 constexpr double kShortenWork = 4000.0;
 constexpr double kShortenWorkOfRad = 1000.0;
@@ -209,6 +211,9 @@ PlanOutcome Planner::Parts::Search(const PlanRequest& request, Work& work, Draws
       slice *= kMoreEachRound;
       if (Spent(request, work) > std::min(kStrictShare * static_cast<double>(request.budget), kStrictWork)) {
         space.AllowNarrowPassages();  // better than none
+      }
+      if (Spent(request, work) > kWideWork) {
+        space.AllowSteepViews();
       }
       continue;
     }

@@ -28,11 +28,14 @@ constexpr double kGoalJointRoom = 0.06;        // the same at the goal; kJointRo
 constexpr double kSingularityRoom = 1.5;       // times the guard's smallest singular value, at the goal,
 constexpr double kLeastSingularityRoom = 1.1;  // or if there is no other
 // Smallest cosine between a flat target's normal and the line of sight: at a start that is planned from, on
-// the way, unless the start has less, and on the way if there is no other.
+// the way, unless the start has less, and on the way if there is no other. If there is none at all, a target
+// that looks wide enough may be shown from an even steeper side.
 constexpr double kEdgeOn = 0.1;
 constexpr double kSteepest = 0.35;
 constexpr double kLeastSteepest = 0.30;
-constexpr double kFacingRoom = 0.01;  // of this cosine, for a start that has less
+constexpr double kWideSteepest = 0.21;
+constexpr double kLeastWidth = 0.026;  // in the normalised image: 14 pixels of 640 that see 60 degrees
+constexpr double kFacingRoom = 0.01;   // of this cosine, for a start that has less
 // Largest absolute cosine of a corner in the picture, unless the start has more: 16.3 degrees. The detector
 // finds corners down to 15.
 constexpr double kSharpest = 0.96;
@@ -58,6 +61,23 @@ Range RangeOf(const config::ServoConfig& config, double room) noexcept {
   return range;
 }
 
+// The smallest height of a plate over one of its sides [m].
+double NarrowestOf(const features::TargetOutline& outline) noexcept {
+  const int n = outline.num_points;
+  double narrowest = HUGE_VAL;
+  for (int i = 0; i < n; ++i) {
+    const model::Vec3& a = outline.p_OP[static_cast<std::size_t>(i)];
+    const model::Vec3 side = outline.p_OP[static_cast<std::size_t>((i + 1) % n)] - a;
+    double height = 0.0;
+    for (int j = 0; j < n; ++j) {
+      const model::Vec3 to = outline.p_OP[static_cast<std::size_t>(j)] - a;
+      height = std::max(height, model::Cross(side, to).norm() / side.norm());
+    }
+    narrowest = std::min(narrowest, height);
+  }
+  return narrowest;
+}
+
 }  // namespace
 
 PostureSpace::PostureSpace(const config::ServoConfig& config, const EyeReach& reach) noexcept
@@ -65,6 +85,7 @@ PostureSpace::PostureSpace(const config::ServoConfig& config, const EyeReach& re
       detector_(reach),
       solid_(config),
       outline_(config.feature.Outline()),
+      narrowest_(config.feature.SeesOrientation() ? NarrowestOf(outline_) : 0.0),
       levers_(barriers::Levers(config.arm, config.guard.hand)),
       range_(RangeOf(config, kJointRoom)),
       goal_range_(RangeOf(config, kGoalJointRoom)) {
@@ -107,6 +128,7 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   Work none(1);
   Posture start;
   steepest_ = kEdgeOn;
+  wide_steepest_ = HUGE_VAL;
   sharpest_ = 1.0;
   reach_ = detector_;
   Place(q, none, start);
@@ -151,6 +173,8 @@ void PostureSpace::AllowNarrowPassages() noexcept {
   steepest_ = std::min(steepest_, kLeastSteepest);
 }
 
+void PostureSpace::AllowSteepViews() noexcept { wide_steepest_ = std::min(steepest_, kWideSteepest); }
+
 void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) const noexcept {
   work.Spend();
   posture.q = q;
@@ -159,8 +183,7 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
   posture.X_CO = posture.X_BC.Inverse() * X_BO_;
   model::ComputeJacobian(config_.arm, posture.poses, config_.X_EC, posture.J_C);
   const double distance = posture.X_CO.p.norm();
-  bool faced = (!config_.feature.SeesOrientation() || CosineTo(posture) > steepest_) &&
-               distance >= reach_.nearest && distance <= reach_.farthest;
+  bool faced = IsFaced(posture) && distance >= reach_.nearest && distance <= reach_.farthest;
   for (int i = 0; i < outline_.num_points; ++i) {
     faced = faced && (posture.X_CO * outline_.p_OP[static_cast<std::size_t>(i)]).z() > kNearestPoint;
   }
@@ -170,6 +193,15 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
     posture.picture = barriers::FieldOfViewBarriersOnPlan(
         config_.guard, {outline_, {posture.X_CO, model::Vec3::Zero(), model::Vec3::Zero()}, posture.J_C});
   }
+}
+
+bool PostureSpace::IsFaced(const Posture& posture) const noexcept {
+  if (!config_.feature.SeesOrientation()) {
+    return true;
+  }
+  const double cosine = CosineTo(posture);
+  return cosine > steepest_ ||
+         (cosine > wide_steepest_ && narrowest_ * cosine > kLeastWidth * posture.X_CO.p.norm());
 }
 
 double PostureSpace::CosineTo(const Posture& posture) noexcept {

@@ -60,6 +60,8 @@ class PostureSpace {
   // From here to the next Begin, a path needs less room before lines of sight, and may show a flat target
   // from a steeper side.
   void AllowNarrowPassages() noexcept;
+  // From here to the next Begin, a flat target that looks wide may be shown from a still steeper side.
+  void AllowSteepViews() noexcept;
 
   // The posture at `q`; spends one unit of work. Joint ranges are not checked here.
   void Place(const model::VecN& q, Work& work, Posture& posture) const noexcept;
@@ -101,6 +103,8 @@ class PostureSpace {
  private:
   static constexpr std::size_t kMostSolids = barriers::SolidBarriers::kMost;
 
+  // Whether a flat target is seen from enough of its front.
+  [[nodiscard]] bool IsFaced(const Posture& posture) const noexcept;
   // Cosine between a flat target's normal and the line of sight.
   [[nodiscard]] static double CosineTo(const Posture& posture) noexcept;
   // Largest absolute cosine of a flat target's corners, as the picture shows them; 0 without corners, or if
@@ -120,14 +124,16 @@ class PostureSpace {
   EyeReach reach_;           // with some room, or what the start has
   barriers::SolidBarriers solid_;
   features::TargetOutline outline_;
+  double narrowest_;  // height of a plate over one of its sides [m]
   barriers::PerJoint levers_;
   model::VecN scale_;                         // of each joint in Distance
   std::array<double, kMostSolids> margin_{};  // of each solid's row in the tick [m]
   std::array<double, kMostSolids> room_{};    // that a path keeps beyond [m]
   // What the proof uses instead of margin_ [m]: from a start nearer than that, the guard's proof of a stop's.
   std::array<double, kMostSolids> bound_{};
-  double steepest_ = 0.0;  // least CosineTo
-  double sharpest_ = 1.0;  // most SharpestCorner
+  double steepest_ = 0.0;       // least CosineTo
+  double wide_steepest_ = 0.0;  // the same of a target that looks wide
+  double sharpest_ = 1.0;       // most SharpestCorner
   model::VecN q_start_;
   double start_room_ = 0.0;  // before the picture's edges at the start, normalised
   double sight_room_ = 0.0;  // [m]
