@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,8 +32,12 @@ class AtlasStartsFile : public testing::Test {
     return ReadStarts(file_, scene_);
   }
   void ExpectRefused(const std::string& text, const std::string& says) const {
+    ExpectRefused(text, says, scene_);
+  }
+  void ExpectRefused(const std::string& text, const std::string& says, const Scene& scene) const {
+    std::ofstream(file_) << text;
     try {
-      Read(text);
+      static_cast<void>(ReadStarts(file_, scene));
       ADD_FAILURE() << text;
     } catch (const config::InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr("starts.csv"));
@@ -123,6 +128,118 @@ TEST_F(AtlasStartsFile, ErrorsNameLineColumnAndWhatIsAllowed) {
   ExpectRefused("[{\"q1\": 0}", "not a JSON array of objects");
   ExpectRefused(heading + "0,0,0,-2,0,1,0,9,0,0,0,0,0\n", "target_x = 9 is not allowed: -5 to 5 m");
   ExpectRefused(heading + "0,0,0,-2,0,1,0,3,0,0.1,0,0,0\n", "no run can begin there: the target's outline");
+}
+
+// The simulator would refuse each of these goals, once its run begins.
+TEST_F(AtlasStartsFile, GoalsThatTheSimulatorRefusesAreFoundBeforeAnyRun) {
+  const std::string heading =
+      fmt::format("{},goal_x,goal_y,goal_z,goal_roll,goal_pitch,goal_yaw\n", kPostureHeading);
+  const std::string start = fmt::format("{},{}", fmt::join(drawn_.q, ","), Target());
+  const std::string text = heading + start + ",0,0,0.5,0,0,0\n" + start;
+  EXPECT_EQ(Read(text + ",0,0,0.4,0,0,0\n").size(), 2U);
+  ExpectRefused(text + ",0,0,-0.4,0,0,0\n",
+                "starts.csv:3: goal_z = -0.4 is not allowed: the target must be wholly in front");
+  ExpectRefused(text + ",0,0,0,0,0,0\n", "starts.csv:3: goal_z = 0 is not allowed");
+  ExpectRefused(text + ",0,0,0.04,0,0,0\n", "starts.csv:3: goal_z = 0.04 is not allowed");
+  ExpectRefused(text + ",1,0,0.4,0,0,0\n", "starts.csv:3: goal_x = 1 is not allowed with goal_z = 0.4");
+  ExpectRefused(text + ",0,-0.3,0.4,0,0,0\n", "starts.csv:3: goal_y = -0.3 is not allowed with goal_z = 0.4");
+}
+
+TEST_F(AtlasStartsFile, GoalsOutOfTheDetectorsReachAreRefused) {
+  Scene scene = scene_;
+  scene.reach = {0.12, 1.2};
+  const std::string text =
+      fmt::format("{},goal_x,goal_y,goal_z,goal_roll,goal_pitch,goal_yaw\n{},{},0,0,{{}},0,0,0\n",
+                  kPostureHeading, fmt::join(drawn_.q, ","), Target());
+  for (const double z : {0.1, 4.9}) {
+    ExpectRefused(fmt::format(fmt::runtime(text), z),
+                  fmt::format("starts.csv:2: goal_z = {0} is not allowed: the goal's distance is {0} m; "
+                              "vision.distance_min and vision.distance_max allow 0.12 to 1.2 m",
+                              z),
+                  scene);
+  }
+}
+
+TEST_F(AtlasStartsFile, MarksAndLineEndsOfAnySystemAreRead) {
+  const std::string start = fmt::format("{},{}", fmt::join(drawn_.q, ","), Target());
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::vector<Start> starts = Read("\xEF\xBB\xBF" + (kPostureHeading + end) + end + start);
+    ASSERT_EQ(starts.size(), 1U);
+    EXPECT_EQ(starts[0].q, drawn_.q);
+    EXPECT_EQ(starts[0].line, 3);
+    ExpectRefused("\xEF\xBB\xBF[" + end + "{" + end + "\"q1\":" + end + "true}]", "starts.csv:3: q1 = true");
+  }
+}
+
+TEST_F(AtlasStartsFile, CsvErrorsNameThePlaceAndQuoteLittle) {
+  ExpectRefused("# only\n\nq1,q2\n", "starts.csv:3: contains no start: this heading needs a line of values");
+  ExpectRefused("\nq1,q2,q1\n", "starts.csv:2: column q1 occurs twice");
+  ExpectRefused("q1,,q2\n", "starts.csv:1: column 2 of the heading has no name");
+  ExpectRefused("\xFF\xFEq\x01", "is UTF-16: UTF-8 is allowed");
+  const std::string nines(5000, '9');
+  for (const std::string& text :
+       {"q1\n" + nines + "\n", nines + "\nx\n", nines + "\n0\n", "[{\"q1\":\"" + nines + "\"}]",
+        "[{\"q1\":" + nines + "}]", "[{\"" + nines + "\":null}]", "[{\"" + nines + "\":1}]",
+        "[" + nines + "]", "[{}" + nines + "]"}) {
+    try {
+      Read(text);
+      ADD_FAILURE() << text.substr(0, 9);
+    } catch (const config::InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), file_.string().size() + 250U) << error.what();
+    }
+  }
+}
+
+TEST_F(AtlasStartsFile, JsonErrorsNameThePlace) {
+  ExpectRefused("[{\"q1\":1},\n{\"q1\":\n NaN}]", "starts.csv:2: q1 = NaN is not allowed: a finite number");
+  ExpectRefused("[{\n\"q1\": 1e400}]", "starts.csv:2: q1 = 1e400 is not allowed: a finite number");
+  ExpectRefused("[{\n\n\"q1\": -Infinity}]", "starts.csv:3: q1 = -Infinity is not allowed");
+  ExpectRefused("[{\"q1\": }]", "starts.csv:1: q1 = } is not allowed: a finite number");
+  ExpectRefused("[{\"q1\": 0,\n\"q1\": 1}]", "starts.csv:2: column q1 occurs twice");
+  ExpectRefused("[\n {\"q1\": 0.0.1}]", "starts.csv:2: character 9, \"0.0.1\": not a JSON array of objects");
+  ExpectRefused("[{\"q1\" 0}]", "starts.csv:1: character 8, \"0\": not a JSON array");
+  ExpectRefused("[{\"q1\": 0}\n]]", "starts.csv:2: character 2, \"]\": not a JSON array");
+  ExpectRefused("[{\"q1\": 0\n", "starts.csv:2: character 1, the end: not a JSON array");
+  ExpectRefused("{\"q1\": 0}", "starts.csv:1: {...}: not a JSON array");
+  ExpectRefused("[{},\n7]", "starts.csv:2: 7: not a JSON array");
+  ExpectRefused("[]", "contains no start");
+  // A backslash at a text's end once hid where the text ends.
+  ExpectRefused("[{\"a\\\\\":1},\n{\"q1\":1},\n{\"q1\":\"x\"}]", "starts.csv:3: q1 = \"x\" is not allowed");
+}
+
+TEST_F(AtlasStartsFile, DeepJsonIsRefusedWhereItGetsTooDeep) {
+  const std::string deep(300000, '[');
+  const std::string end(300000, ']');
+  ExpectRefused("[{\"q1\":" + deep + end + "}]", "starts.csv:1: q1 = [...] is not allowed");
+  ExpectRefused(deep + end, "starts.csv:1: [...]: not a JSON array of objects");
+  std::string nested = "[";
+  for (int i = 0; i < 100000; ++i) {
+    nested += "{\"q1\":";
+  }
+  ExpectRefused(nested, "starts.csv:1: q1 = {...} is not allowed");
+}
+
+// A pipe that nobody writes to would be waited for, and a large file fill the memory.
+TEST_F(AtlasStartsFile, OnlyRegularFilesOfSomeSizeAreRead) {
+  const auto expect_refused = [&](const std::filesystem::path& file, const std::string& says) {
+    for (const bool hash : {false, true}) {
+      try {
+        hash ? static_cast<void>(HashOfFile(file)) : static_cast<void>(ReadStarts(file, scene_));
+        ADD_FAILURE() << file;
+      } catch (const config::InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("--starts " + file.string() + ": " + says));
+      }
+    }
+  };
+  const std::filesystem::path pipe = folder_.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::filesystem::path& file : {pipe, std::filesystem::path("/dev/zero"), folder_.path()}) {
+    expect_refused(file, "is not a regular file: a CSV or JSON file is allowed");
+  }
+  expect_refused(folder_.path() / "none", "cannot be read");
+  std::ofstream(file_) << "q1\n";
+  std::filesystem::resize_file(file_, 101'000'000);  // a hole, which takes no room
+  expect_refused(file_, "101 MB are not allowed: at most 100 MB");
 }
 
 TEST_F(AtlasStartsFile, TargetOutOfTheDetectorsReachIsRefused) {

@@ -15,6 +15,7 @@
 #include "tests/support/program.hpp"
 #include "tests/tools/fovea/atlas_scene.hpp"
 #include "tools/fovea/atlas/figures.hpp"
+#include "tools/fovea/atlas/files.hpp"
 #include "tools/fovea/atlas/page.hpp"
 #include "tools/fovea/atlas/sampler.hpp"
 #include "tools/fovea/atlas/seed.hpp"
@@ -177,6 +178,7 @@ TEST_F(AtlasTest, MakesViewsThatItRunsFromTheFile) {
 
 TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target.kind itself");
+  ExpectRefused({"--starts", ""}, "--starts: no file is named");
   ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");
   fs::create_directories(folder_.path() / "refused");
   std::ofstream(folder_.path() / "refused" / "rows.jsonl") << "{}\n";
@@ -188,6 +190,15 @@ TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   EXPECT_EQ(Atlas("refused", {"--jobs", "0"}).exit_code, 2);
   EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas", "--target", "cube"}).exit_code, 2);
   EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas"}).exit_code, 2);
+}
+
+// A run that cannot write its log says so after its progress.
+TEST_F(AtlasTest, ReasonIsTheSimulatorsErrorNotItsProgress) {
+  EXPECT_EQ(atlas::ReasonOf("ball:   0 %  0.0 of 0.1 s  preparing\nfovea-sim: run.mcap: cannot be written\n"),
+            "run.mcap: cannot be written");
+  EXPECT_EQ(atlas::ReasonOf("fovea-sim: --set: servo.goal: 3 values\n"), "servo.goal: 3 values");
+  EXPECT_THAT(atlas::ReasonOf("ball:   0 %  0.0 of 0.1 s  preparing\n"), HasSubstr("is the disk full?"));
+  EXPECT_THAT(atlas::ReasonOf(""), HasSubstr("is the disk full?"));
 }
 
 // Arm, camera, mount and goal follow from --set. The rows' check against the simulator's first picture fails

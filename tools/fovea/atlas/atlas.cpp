@@ -220,14 +220,16 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   CLI::Option* draw_only =
       atlas->add_flag("--draw-only", arguments.draw_only,
                       "draw the starts without running them; print how many are rejected, and why");
+  // E.g. an unset variable of a shell.
+  const CLI::Validator named([](const std::string& file) { return file.empty() ? "no file is named" : ""; },
+                             "FILE");
   CLI::Option* views =
       atlas
           ->add_option(
               "--make-views", arguments.views,
               "run nothing, but write random starts to this file, for --starts: pairs of camera poses, in "
               "the ranges of a public benchmark")
-          ->check(
-              CLI::Validator([](const std::string& file) { return file.empty() ? "no file" : ""; }, "FILE"))
+          ->check(named)
           ->excludes(draw_only);
   for (CLI::Option* without_runs : {draw_only, views}) {
     without_runs->needs(target);
@@ -243,6 +245,7 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
           ->add_option("--starts", arguments.starts,
                        "file of starts, CSV or JSON, instead of random ones: q1, q2, ... or camera_x, ..., "
                        "camera_yaw; target_x, ..., target_yaw; goal_x, ..., goal_yaw; seed")
+          ->check(named)
           ->needs(target);
   for (const char* option :
        {"--runs", "--truth-size", "--tornado", "--margin", "--draw-only", "--make-views"}) {

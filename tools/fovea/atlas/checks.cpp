@@ -21,10 +21,7 @@ using model::Pose;
 using model::Vec3;
 
 constexpr double kEdgePx = 30.0;
-constexpr double kInsideWorkspace = 0.003;  // distance of the hand from the servo's bound [m]
-constexpr double kHandRadius = 0.03;        // of a ball about the flange [m]
-constexpr double kThingClear = 0.01;        // distance of things from the lines of sight and the target [m]
-constexpr int kPerSide = 4;                 // points of a flat target's side that are looked at
+constexpr int kPerSide = 4;  // points of a flat target's side that are looked at
 // Along a path.
 constexpr double kDepthOnTheWay = 0.05;  // [m]
 constexpr double kSteepest = 0.2;        // cosine between a flat target's normal and the line of sight
@@ -118,8 +115,26 @@ StartChecks::StartChecks(const Scene& scene) : scene_(scene), boxes_(scene.boxes
   boxes_.insert(boxes_.end(), known.boxes.begin(), known.boxes.begin() + known.num_boxes);
 }
 
-const StartChecks::Clear StartChecks::kAtEnds{0.02, 0.04, 0.02, 0.02, 0.03};
-const StartChecks::Clear StartChecks::kOnTheWay{0.0, 0.03, 0.0, 0.0, 0.01};
+const StartChecks::Clear StartChecks::kAtEnds{.margins = 2.0,
+                                              .workspace = 0.003,
+                                              .links = 0.02,
+                                              .hand = 0.04,
+                                              .hand_ball = 0.03,
+                                              .sight = 0.02,
+                                              .itself = 0.02,
+                                              .target = 0.03,
+                                              .things = 0.01};
+// What the guard proves each stop to keep, and 1 mm: between tested postures, 0.1 rad apart, the hand comes
+// nearer to a plane by that much.
+const StartChecks::Clear StartChecks::kOnTheWay{.margins = 1.0,
+                                                .workspace = 0.001,
+                                                .links = 0.001,
+                                                .hand = 0.001,
+                                                .hand_ball = 0.0,
+                                                .sight = 0.0,
+                                                .itself = 0.0,
+                                                .target = 0.001,
+                                                .things = 0.001};
 
 StartPosture StartChecks::At(const model::VecN& q) const {
   const config::ServoConfig& servo = scene_.servo;
@@ -136,14 +151,14 @@ StartPosture StartChecks::At(const model::VecN& q) const {
   return posture;
 }
 
-bool StartChecks::InsideBarrier(const StartPosture& posture) const {
+bool StartChecks::InsideBarrier(const StartPosture& posture, const Clear& clear) const {
   const config::GuardConfig& guard = scene_.servo.guard;
-  return posture.poses.X_BE.p.norm() <= guard.workspace_radius - guard.workspace_margin - kInsideWorkspace;
+  return posture.poses.X_BE.p.norm() <= guard.workspace_radius - guard.workspace_margin - clear.workspace;
 }
 
 bool StartChecks::ClearOfSolids(const StartPosture& posture, const Clear& clear) const {
   const config::GuardConfig& guard = scene_.servo.guard;
-  const double margin = 2.0 * guard.workspace_margin;
+  const double margin = clear.margins * guard.workspace_margin;
   const config::Obstacles& solids = guard.obstacles;
   const auto hand_is_clear = [&](const Vec3& p_B, double radius) {
     const double least = radius + margin + clear.hand;
@@ -179,7 +194,8 @@ bool StartChecks::ClearOfSolids(const StartPosture& posture, const Clear& clear)
       return false;
     }
   }
-  return hand_is_clear(posture.poses.X_BE.p, kHandRadius) && hand_is_clear(posture.X_BC.p, kHandRadius);
+  return hand_is_clear(posture.poses.X_BE.p, clear.hand_ball) &&
+         (clear.hand_ball == 0.0 || hand_is_clear(posture.X_BC.p, clear.hand_ball));
 }
 
 // Along each axis of the picture, a ball's outline ends at the tangents to the ball (exact, also off axis).
@@ -245,8 +261,18 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, con
         return true;
       }
     }
-    if (near(posture.poses.X_BE.p, posture.X_BC.p, kHandRadius)) {
-      return true;
+    if (clear.hand_ball > 0.0) {
+      if (near(posture.poses.X_BE.p, posture.X_BC.p, clear.hand_ball)) {
+        return true;
+      }
+      continue;
+    }
+    for (int i = 0; i < servo.guard.hand.num_balls; ++i) {
+      const auto& ball = servo.guard.hand.balls[static_cast<std::size_t>(i)];
+      const Vec3 p_B = posture.poses.X_BE * ball.p_EP;
+      if (near(p_B, p_B, ball.radius)) {
+        return true;
+      }
     }
   }
   return false;
@@ -259,7 +285,7 @@ bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO, c
   const std::vector<Vec3> points = PointsOf(outline, X_BO);
   return std::any_of(points.begin(), points.end(), [&](const Vec3& p_BP) {
     const Vec3 p_before = posture.X_BC.p + kShare * (p_BP - posture.X_BC.p);
-    return ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius) ||
+    return ThingInTheWay(posture.X_BC.p, p_BP, clear.things + outline.radius) ||
            IsNearABox(boxes_, posture.X_BC.p, p_before, scene_.servo.guard.sight_clearance + clear.sight) ||
            IsNearABox(boxes_, p_BP, p_BP, outline.radius + clear.target);
   });
@@ -284,6 +310,8 @@ bool StartChecks::IsHidden(const StartPosture& posture, const Pose& X_BO) const 
   }
   return scene_.drawn->Hides(posture.q, p_BC, points);
 }
+
+bool StartChecks::InsideBarrier(const StartPosture& posture) const { return InsideBarrier(posture, kAtEnds); }
 
 bool StartChecks::ClearOfSolids(const StartPosture& posture) const { return ClearOfSolids(posture, kAtEnds); }
 
@@ -317,18 +345,41 @@ bool StartChecks::StandsAtGoal(const StartPosture& posture, const Pose& X_BO) co
          !ArmInTheWay(posture, X_BO) && !BenchInTheWay(posture, X_BO);
 }
 
+bool StartChecks::StandsAtGoalByServo(const StartPosture& posture, const Pose& X_BO) const {
+  return IsRegular(posture) && OnTheWay(posture, X_BO);
+}
+
 bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO) const {
   const Pose X_CO = posture.X_BC.Inverse() * X_BO;
   const bool faces =
       !scene_.servo.feature.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
-  return X_CO.p.z() > kDepthOnTheWay && faces && !OutOfViewOnTheWay(X_CO) && InsideBarrier(posture) &&
-         ClearOfSolids(posture, kOnTheWay) && !ArmInTheWay(posture, X_BO, kOnTheWay) &&
-         !BenchInTheWay(posture, X_BO, kOnTheWay) && !IsHidden(posture, X_BO);
+  return X_CO.p.z() > kDepthOnTheWay && faces && !OutOfViewOnTheWay(X_CO) &&
+         InsideBarrier(posture, kOnTheWay) && ClearOfSolids(posture, kOnTheWay) &&
+         !ArmInTheWay(posture, X_BO, kOnTheWay) && !BenchInTheWay(posture, X_BO, kOnTheWay) &&
+         !IsHidden(posture, X_BO);
 }
 
+// By the servo's bounds, for which a ball reaches r / z in the image. Without them: by the picture's edges.
 bool StartChecks::OutOfViewOnTheWay(const Pose& X_CO) const {
-  constexpr double kEdgeOnTheWayPx = 10.0;
-  return X_CO.p.z() > kDepthOnTheWay && !InPicture(X_CO, kEdgeOnTheWayPx);
+  if (!(X_CO.p.z() > kDepthOnTheWay)) {
+    return false;
+  }
+  const config::ViewConfig& view = scene_.servo.guard.view;
+  if (!view.enabled) {
+    return !InPicture(X_CO, 0.0);
+  }
+  const features::TargetOutline outline = scene_.servo.feature.Outline();
+  for (int i = 0; i < outline.num_points; ++i) {
+    const Vec3 p = X_CO * outline.p_OP[static_cast<std::size_t>(i)];
+    const double x = p.x() / p.z();
+    const double y = p.y() / p.z();
+    const double reach = outline.radius / p.z();
+    if (!(p.z() > 0.0 && x - reach >= view.x_min && x + reach <= view.x_max && y - reach >= view.y_min &&
+          y + reach <= view.y_max)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace fovea::atlas

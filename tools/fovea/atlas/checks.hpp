@@ -40,9 +40,11 @@ class StartChecks {
   // one that the servo would not go there.
   [[nodiscard]] bool StandsAtGoal(const StartPosture& posture, const model::Pose& X_BO) const;
 
-  // True when a posture on a path meets all conditions. The bounds are less strict than at its ends: those
-  // that the servo itself keeps.
+  // True when a posture on a path meets all conditions. The bounds are less strict than at the ends of drawn
+  // starts: those that the servo's guard keeps, so that no way is denied that the servo may take.
   [[nodiscard]] bool OnTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
+  // The same of a posture that reaches the goal, which must not be too singular either.
+  [[nodiscard]] bool StandsAtGoalByServo(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when the target is in front of the camera but not completely in the picture, by the path's bound.
   [[nodiscard]] bool OutOfViewOnTheWay(const model::Pose& X_CO) const;
 
@@ -51,15 +53,20 @@ class StartChecks {
  private:
   // What the arm must keep beyond the servo's own bounds [m].
   struct Clear {
-    double links;   // from planes and boxes
-    double hand;    // from planes and boxes
-    double sight;   // links and boxes from lines of sight
-    double itself;  // links from each other
-    double target;  // whole arm and boxes from the target
+    double margins;    // how many times safety.workspace_margin planes and boxes are kept off
+    double workspace;  // hand from the workspace's edge
+    double links;      // from planes and boxes
+    double hand;       // from planes and boxes
+    double hand_ball;  // radius about flange and camera, besides the balls of the servo's hand
+    double sight;      // links and boxes from lines of sight
+    double itself;     // links from each other
+    double target;     // whole arm and boxes from the target
+    double things;     // on the bench, from the lines of sight and the target
   };
   static const Clear kAtEnds;
   static const Clear kOnTheWay;
   [[nodiscard]] bool InPicture(const model::Pose& X_CO, double edge_px) const;
+  [[nodiscard]] bool InsideBarrier(const StartPosture& posture, const Clear& clear) const;
   [[nodiscard]] bool ClearOfSolids(const StartPosture& posture, const Clear& clear) const;
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO,
                                  const Clear& clear) const;

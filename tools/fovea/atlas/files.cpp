@@ -14,16 +14,17 @@ std::string Content(const std::filesystem::path& file) {
   return content.str();
 }
 
-std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 std::string ReasonOf(const std::string& said) {
-  std::string line = FirstLine(said);
-  for (const std::string begin : {"fovea-sim: ", "--set: "}) {
-    if (line.rfind(begin, 0) == 0) {
-      line.erase(0, begin.size());
+  const std::string own = "fovea-sim: ";
+  std::string reason = "no reason is given; is the disk full?";
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(own)) {
+      reason = line.substr(own.size());
     }
   }
-  return line;
+  const std::string set = "--set: ";
+  return reason.starts_with(set) ? reason.substr(set.size()) : reason;
 }
 
 void CheckWritable(const std::filesystem::path& file) {

@@ -9,9 +9,8 @@ namespace fovea::atlas {
 
 // The content of `file`; "" when it cannot be read.
 std::string Content(const std::filesystem::path& file);
-std::string FirstLine(const std::string& text);
-// The first line of what the simulator `said`, without its name and without --set, which the caller did not
-// write.
+// Why the simulator ended, from what it `said`: its last line with its name, which follows any progress
+// lines; without that name and without --set, which the caller did not write.
 std::string ReasonOf(const std::string& said);
 // InputError: the file cannot be written. Keeps what is in it; to be asked before long work.
 void CheckWritable(const std::filesystem::path& file);

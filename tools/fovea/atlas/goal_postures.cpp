@@ -31,13 +31,15 @@ Vec6 OffOf(const Pose& X_CO, const Pose& X_CO_star) {
 
 }  // namespace
 
-GoalPostures::GoalPostures(const Scene& scene) : checks_(scene) {
+GoalPostures::GoalPostures(const Scene& scene, Bounds bounds) : checks_(scene), bounds_(bounds) {
   const model::ArmModel& arm = scene.servo.arm;
   q_least_.resize(arm.num_joints);
   q_most_.resize(arm.num_joints);
   for (int i = 0; i < arm.num_joints; ++i) {
     const model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    const double margin = std::min(kJointMargin, 0.25 * (joint.q_max - joint.q_min));
+    const double margin = bounds == Bounds::kOfServo
+                              ? scene.servo.guard.joint_position_margin
+                              : std::min(kJointMargin, 0.25 * (joint.q_max - joint.q_min));
     q_least_[i] = joint.q_min + margin;
     q_most_[i] = joint.q_max - margin;
   }
@@ -117,7 +119,13 @@ std::optional<VecN> GoalPostures::DescendToGoal(const VecN& q, const Pose& X_BO)
   const std::optional<VecN> end = Descend(q, X_BO, feature.SeesOrientation() ? 6 : 3, [&](const Pose& X_CO) {
     return OffOf(X_CO, {NearestGoal(X_CO.R), feature.p_CO_C_star});
   });
-  return end && checks_.StandsAtGoal(checks_.At(*end), X_BO) ? end : std::nullopt;
+  if (!end) {
+    return std::nullopt;
+  }
+  const StartPosture posture = checks_.At(*end);
+  const bool stands = bounds_ == Bounds::kOfServo ? checks_.StandsAtGoalByServo(posture, X_BO)
+                                                  : checks_.StandsAtGoal(posture, X_BO);
+  return stands ? end : std::nullopt;
 }
 
 std::vector<VecN> GoalPostures::Find(const VecN& q, const Pose& X_BO, const Descents& descents,

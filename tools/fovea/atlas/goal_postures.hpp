@@ -3,6 +3,7 @@
 // near it and from anywhere, as far as they end in a posture that is clear of everything.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <random>
@@ -15,7 +16,12 @@ namespace fovea::atlas {
 
 class GoalPostures {
  public:
-  explicit GoalPostures(const Scene& scene);
+  // How near postures may come to what the arm must keep off: the ends of its joints' ranges, solids, itself.
+  enum class Bounds : std::uint8_t {
+    kOfDraws,  // with room: of drawn starts and their goals
+    kOfServo,  // those that the servo's guard keeps
+  };
+  explicit GoalPostures(const Scene& scene, Bounds bounds = Bounds::kOfDraws);
 
   struct Descents {
     int near = 16;  // from postures within 0.5 rad
@@ -30,7 +36,8 @@ class GoalPostures {
   [[nodiscard]] std::optional<model::VecN> WithCameraAt(
       const model::Pose& X_BC, const std::function<bool(const model::VecN& q)>& is_allowed) const;
 
-  // Uniform in the joints' ranges less 5 degrees at each end, to 1e-4 rad.
+  // Uniform in the joints' ranges, to 1e-4 rad. Draws keep 5 degrees off each end, the servo
+  // safety.joint_position_margin.
   [[nodiscard]] model::VecN DrawPosture(std::mt19937_64& engine) const;
   // The goal's orientation. If several look alike, the nearest one.
   [[nodiscard]] model::Mat3 NearestGoal(const model::Mat3& R_CO) const;
@@ -51,6 +58,7 @@ class GoalPostures {
   [[nodiscard]] std::optional<model::VecN> DescendToGoal(const model::VecN& q, const model::Pose& X_BO) const;
 
   StartChecks checks_;
+  Bounds bounds_;
   model::VecN q_least_;  // the joints' ranges, less the margin
   model::VecN q_most_;
 };

@@ -16,8 +16,7 @@ namespace {
 using model::Pose;
 using model::VecN;
 
-constexpr double kRangeOnTheWay = 0.06;  // a way may use this much more of a joint's range at each end [rad]
-constexpr double kSame = 0.01;           // goal postures this near to each other count as one [rad]
+constexpr double kSame = 0.01;  // goal postures this near to each other count as one [rad]
 
 // Without those that are the same.
 std::vector<VecN> Different(const std::vector<VecN>& goals) {
@@ -41,15 +40,16 @@ std::string InWords(const Judgement& judgement) {
 }
 
 Judgement JudgeStart(const Scene& scene, const Start& start, const JudgeEffort& effort) {
-  const GoalPostures postures(start.goal ? WithGoal(scene, *start.goal) : scene);
+  const GoalPostures postures(start.goal ? WithGoal(scene, *start.goal) : scene,
+                              GoalPostures::Bounds::kOfServo);
   const StartChecks& checks = postures.checks();
   const Pose X_BO = start.TargetPose();
   const VecN q = Eigen::Map<const VecN>(start.q.data(), static_cast<Eigen::Index>(start.q.size()));
   std::mt19937_64 engine(start.way_seed);
   const std::vector<VecN> goals = Different(postures.Find(q, X_BO, {.far = effort.descents}, engine));
   WayProblem problem;
-  problem.least = postures.least().array() - kRangeOnTheWay;
-  problem.most = postures.most().array() + kRangeOnTheWay;
+  problem.least = postures.least();
+  problem.most = postures.most();
   problem.is_allowed = [&](const VecN& at) { return checks.OnTheWay(checks.At(at), X_BO); };
   problem.pull = [&](const VecN& at) { return postures.PulledIntoView(at, X_BO); };
   problem.draws = effort.draws;

@@ -45,12 +45,12 @@ inline constexpr std::array<const char*, kRejectionNames.size()> kRejectionWords
 using Rejections = std::array<std::uint64_t, kRejectionNames.size()>;
 
 struct Start {
-  std::vector<double> q;          // [num_joints], to 1e-4 [rad]
-  model::Vec3 p_BO;               // to 1e-4 [m]
-  std::array<double, 3> rpy_deg;  // of O in B about fixed axes, to 0.01 [deg]
-  std::uint32_t run_seed = 0;     // of the run's own noise
-  std::uint64_t way_seed = 0;     // of the search for a way
-  double u_px = 0.0;              // the target's centre in the picture at the start
+  std::vector<double> q;                   // [num_joints], to 1e-4 [rad]
+  model::Vec3 p_BO = model::Vec3::Zero();  // to 1e-4 [m]
+  std::array<double, 3> rpy_deg{};         // of O in B about fixed axes, to 0.01 [deg]
+  std::uint32_t run_seed = 0;              // of the run's own noise
+  std::uint64_t way_seed = 0;              // of the search for a way
+  double u_px = 0.0;                       // the target's centre in the picture at the start
   double v_px = 0.0;
   double depth = 0.0;        // [m]
   double tilt_deg = 0.0;     // between a flat target and the picture

@@ -4,18 +4,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/roll_pitch_yaw.hpp"
-#include "tools/fovea/atlas/files.hpp"
+#include "tools/fovea/atlas/start_records.hpp"
 
 namespace fovea::atlas {
 namespace {
@@ -28,16 +24,6 @@ constexpr double kAngleMost = 360.0;  // [deg]
 constexpr double kPlaceMost = 5.0;    // of a target, as target.position allows [m]
 constexpr double kSeedMost = 2147483647.0;
 constexpr std::array<const char*, 6> kPoseNames{"x", "y", "z", "roll", "pitch", "yaw"};
-
-// A start before it is checked: its values by column.
-struct Record {
-  int line = 0;
-  std::map<std::string, double> values;
-};
-
-std::string At(const std::filesystem::path& file, int line) {
-  return fmt::format("{}:{}", file.string(), line);
-}
 
 std::vector<std::string> PoseColumns(const std::string& of) {
   std::vector<std::string> columns;
@@ -55,100 +41,10 @@ std::vector<std::string> PostureColumns(int num_joints) {
   return columns;
 }
 
-// The words between commas, without blanks around them.
-std::vector<std::string> Cells(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line + ",");
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    const std::size_t begin = cell.find_first_not_of(" \t\r");
-    const std::size_t end = cell.find_last_not_of(" \t\r");
-    cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
-  }
-  return cells;
-}
-
-std::vector<Record> ReadCsv(const std::filesystem::path& file, const std::string& text) {
-  std::vector<Record> records;
-  std::vector<std::string> columns;
-  std::stringstream stream(text);
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    const std::vector<std::string> cells = Cells(line);
-    if (cells == std::vector<std::string>{""} || cells[0][0] == '#') {
-      continue;
-    }
-    if (columns.empty()) {
-      columns = cells;
-      continue;
-    }
-    if (cells.size() != columns.size()) {
-      throw InputError(
-          fmt::format("{}: {} values for {} columns", At(file, number), cells.size(), columns.size()));
-    }
-    Record record{number, {}};
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      double value = NAN;
-      const char* end = cells[i].data() + cells[i].size();
-      const auto read = std::from_chars(cells[i].data(), end, value);
-      if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) {
-        throw InputError(fmt::format("{}: {} = \"{}\" is not allowed: a finite number", At(file, number),
-                                     columns[i], cells[i]));
-      }
-      if (!record.values.emplace(columns[i], value).second) {
-        throw InputError(fmt::format("{}: column {} occurs twice", At(file, number), columns[i]));
-      }
-    }
-    records.push_back(record);
-  }
-  return records;
-}
-
-// The line on which each object of the array begins.
-std::vector<int> LinesOfObjects(const std::string& text) {
-  std::vector<int> lines;
-  int line = 1;
-  int depth = 0;
-  bool in_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    line += c == '\n' ? 1 : 0;
-    in_text = in_text != (c == '"' && text[i - 1] != '\\');
-    if (!in_text && c == '{' && depth++ == 0) {
-      lines.push_back(line);
-    }
-    depth -= !in_text && c == '}' ? 1 : 0;
-  }
-  return lines;
-}
-
-std::vector<Record> ReadJson(const std::filesystem::path& file, const std::string& text) {
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_array() ||
-      !std::all_of(json.begin(), json.end(), [](const auto& one) { return one.is_object(); })) {
-    throw InputError(
-        fmt::format("{}: not a JSON array of objects, such as [{{\"q1\": 0.1, ...}}, ...]", At(file, 1)));
-  }
-  const std::vector<int> lines = LinesOfObjects(text);
-  std::vector<Record> records;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    Record record{lines[i], {}};
-    for (const auto& [name, value] : json[i].items()) {
-      if (!value.is_number() || !std::isfinite(value.get<double>())) {
-        throw InputError(fmt::format("{}: {} = {} is not allowed: a finite number", At(file, lines[i]), name,
-                                     value.dump()));
-      }
-      record.values[name] = value;
-    }
-    records.push_back(record);
-  }
-  return records;
-}
-
 // Reads the columns of one record.
 class RecordReader {
  public:
-  RecordReader(const std::filesystem::path& file, const Record& record)
+  RecordReader(const std::filesystem::path& file, const StartRecord& record)
       : at_(At(file, record.line)), values_(record.values) {}
 
   // True if there is any of `columns`. InputError: some are there, but not all.
@@ -193,7 +89,7 @@ class RecordReader {
         Refuse(
             fmt::format("column {} is not allowed: q1, q2, ... or camera_x, ..., camera_yaw; target_x, ..., "
                         "target_yaw; goal_x, ..., goal_yaw; seed",
-                        column));
+                        Shortened(column)));
       }
     }
   }
@@ -225,7 +121,42 @@ VecN ReadPosture(const model::ArmModel& arm, RecordReader& reader) {
   return q;
 }
 
-Start StartOf(const Record& record, const Scene& scene, RecordReader& reader) {
+// Refuses a goal that the simulator would refuse. `scene` has this goal.
+void CheckGoal(const Scene& scene, RecordReader& reader) {
+  const features::TargetFeature& feature = scene.servo.feature;
+  const vision::Intrinsics& camera = scene.camera;
+  const model::Vec3& goal = feature.p_CO_C_star;
+  if (!(goal.z() > feature.radius)) {
+    reader.Refuse(fmt::format(
+        "goal_z = {} is not allowed: the target must be wholly in front of the camera, so above {} m",
+        goal.z(), feature.radius));
+  }
+  const auto check_axis = [&](const char* column, double at, double at_px, int size_px) {
+    if (!(at_px >= 0.0 && at_px <= size_px - 1)) {
+      reader.Refuse(fmt::format(
+          "{} = {} is not allowed with goal_z = {}: it is at {:.0f} px, the picture has 0 to {} px", column,
+          at, goal.z(), at_px, size_px - 1));
+    }
+  };
+  check_axis("goal_x", goal.x(), camera.U(goal), camera.width_px);
+  check_axis("goal_y", goal.y(), camera.V(goal), camera.height_px);
+  if (const double distance = goal.norm();
+      distance < scene.reach.nearest || distance > scene.reach.farthest) {
+    reader.Refuse(
+        fmt::format("goal_z = {} is not allowed: the goal's distance is {:.3g} m; vision.distance_min and "
+                    "vision.distance_max allow {} to {} m",
+                    goal.z(), distance, scene.reach.nearest, scene.reach.farthest));
+  }
+  if (features::FeatureState state; !feature.ComputeAtGoal(state)) {
+    reader.Refuse(
+        fmt::format("goal_z = {} is not allowed with these goal_roll and goal_pitch: a part of the target is "
+                    "not in front "
+                    "of the camera",
+                    goal.z()));
+  }
+}
+
+Start StartOf(const StartRecord& record, const Scene& scene, RecordReader& reader) {
   const model::ArmModel& arm = scene.servo.arm;
   const bool has_posture = reader.Has(PostureColumns(arm.num_joints));
   const bool has_camera = reader.Has(PoseColumns("camera"));
@@ -247,6 +178,7 @@ Start StartOf(const Record& record, const Scene& scene, RecordReader& reader) {
   if (has_goal) {
     const std::array<double, 6> goal = reader.PoseOf("goal");
     start.goal = Goal{{goal[0], goal[1], goal[2]}, {goal[3], goal[4], goal[5]}};
+    CheckGoal(WithGoal(scene, *start.goal), reader);
   }
   const double seed = has_seed ? reader.Number("seed", 0.0, kSeedMost, "") : record.line;
   if (seed != std::floor(seed)) {
@@ -282,18 +214,8 @@ Start StartOf(const Record& record, const Scene& scene, RecordReader& reader) {
 }  // namespace
 
 std::vector<Start> ReadStarts(const std::filesystem::path& file, const Scene& scene) {
-  if (!std::filesystem::is_regular_file(file)) {
-    throw InputError(fmt::format("--starts {}: cannot be read", file.string()));
-  }
-  const std::string text = Content(file);
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  const bool is_json = first != std::string::npos && (text[first] == '[' || text[first] == '{');
-  const std::vector<Record> records = is_json ? ReadJson(file, text) : ReadCsv(file, text);
-  if (records.empty()) {
-    throw InputError(fmt::format("{}: contains no start", file.string()));
-  }
   std::vector<Start> starts;
-  for (const Record& record : records) {
+  for (const StartRecord& record : ReadStartRecords(file, StartsText(file))) {
     RecordReader reader(file, record);
     starts.push_back(StartOf(record, scene, reader));
   }
@@ -303,7 +225,7 @@ std::vector<Start> ReadStarts(const std::filesystem::path& file, const Scene& sc
 // FNV-1a, 64 bits.
 std::string HashOfFile(const std::filesystem::path& file) {
   std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : Content(file)) {
+  for (const char c : StartsText(file)) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
   }
   return fmt::format("{:016x}", hash);

@@ -17,10 +17,10 @@
 namespace fovea::atlas {
 
 // InputError, with file, line, column and what is allowed: the file cannot be read, has other columns or
-// values, or a start from which no run can begin.
+// values, a start from which no run can begin, or a goal that the simulator refuses.
 std::vector<Start> ReadStarts(const std::filesystem::path& file, const Scene& scene);
 
-// Tells apart the contents of two files.
+// Tells apart the contents of two files. InputError: the file cannot be read.
 std::string HashOfFile(const std::filesystem::path& file);
 
 }  // namespace fovea::atlas

@@ -133,7 +133,7 @@ void Runs::Finish(const Job& job, int exit_code) {
     row["summary"] = kind_.excerpt(job, summary, File(job.name, ""));
   } else if (exit_code >= 0) {
     throw std::runtime_error(
-        fmt::format("{}: {}", job.name, atlas::FirstLine(atlas::Content(File(job.name, ".txt")))));
+        fmt::format("{}: {}", job.name, atlas::ReasonOf(atlas::Content(File(job.name, ".txt")))));
   }
   stream_ << row.dump() << '\n' << std::flush;
   if (!stream_) {
