@@ -2,6 +2,8 @@
 // A target that is unreachable, absent or lost: the arm stands still in Hold and reports the reason.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
@@ -74,6 +76,21 @@ TEST(Hold, GoalJustPastAJointsEndEndsInHold) {
                   "safety.planes=[0, 0, 1, 0.03]", "run.duration_s=14"},
                  watch.Options(14.0));
   ExpectHeldAsUnreachable(s, watch);
+}
+
+// Limits stop the law, and nobody plans. When the planner answers again, the servo tries again.
+TEST(Hold, GoalThatNobodyPlannedForIsTriedAgainWhenThePlannerIsBack) {
+  const sim::Summary s =
+      RunShipped("square", {"arm.q_start=[-2.6566,1.6366,2.3785,-2.0177,1.5886,0.249,-0.3674]",
+                            "target.position=[-0.7791,0.1669,0.2131]",
+                            "target.rpy_deg=[-133.78,-69.58,139.85]", "safety.planes=[0,0,1,0.03]",
+                            "run.seed=1167555662", "run.duration_s=14", "faults.planner_loss_s=[0,6]"});
+  PrintResidual(s);
+  EXPECT_TRUE(std::any_of(s.modes.begin(), s.modes.end(), [](const sim::ModeEvent& m) {
+    return m.reason == "goal_unreachable";
+  })) << "this start does not need the planner";
+  EXPECT_TRUE(s.converged) << s.verdict;
+  ExpectSound(s);
 }
 
 TEST(Hold, HomeMotionEndsAtRestInTheReadyPosture) {

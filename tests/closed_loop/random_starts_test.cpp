@@ -88,7 +88,28 @@ INSTANTIATE_TEST_SUITE_P(
              {"arm.q_start=[0.5554,0.2702,-1.4411,-2.7501,-1.0992,1.7317,-1.6703]",
               "target.position=[-0.8643,-0.1878,0.3567]", "target.rpy_deg=[79.97,-36.57,-30.4]",
               "run.seed=1475456643"},
-             6.5}),
+             6.5},
+        // The camera only turns and goes back: nothing told the disc's two poses apart, 2.7 mm from each
+        // other.
+        Hard{"DiscSeenFromOneSide",
+             "circle",
+             {"arm.q_start=[1.892,-1.6401,1.1834,-0.8585,0.5559,0.3865,2.2807]",
+              "target.position=[-0.2341,-0.2192,0.2838]", "target.rpy_deg=[-115.04,25.75,28.17]",
+              "run.seed=113750806"},
+             3.0},
+        Hard{"DiscSeenFromOneSideAtAHeight",
+             "circle",
+             {"arm.q_start=[1.4922,-0.0064,-1.9224,-2.635,-1.9101,0.3877,-0.6231]",
+              "target.position=[-0.0017,-0.2446,0.8639]", "target.rpy_deg=[-20.41,62.41,143.57]",
+              "run.seed=901707606"},
+             3.0},
+        // All ways show the square from very steep sides.
+        Hard{"SteepViews",
+             "square",
+             {"arm.q_start=[1.8184,1.3888,-1.2526,-0.3857,-2.417,0.0932,-1.7839]",
+              "target.position=[-0.2498,-0.0315,0.7559]", "target.rpy_deg=[61.49,-46.07,9.32]",
+              "run.seed=1063027370", "run.duration_s=16"},
+             14.0}),
     [](const auto& hard) { return std::string(hard.param.name); });
 
 // Without plans: the pull towards the posture turned the disc edge-on, where the detector cannot find it.

@@ -187,14 +187,14 @@ void AwaitPlan(const config::ServoConfig& config, const WaySight& sight, const P
     return;
   }
   if (!sight.has_answer) {
-    if (IsLonger(sight.now_ns - way.asked_ns, way.planner_late ? kWaitLateS : kWaitS)) {
-      way.planner_late = true;
+    if (IsLonger(sight.now_ns - way.asked_ns, way.IsPlannerLate() ? kWaitLateS : kWaitS)) {
+      way.late_ns = way.asked_ns;
       --way.note.tries;  // nobody has tried
       Change(Way::kLaw, PlanEvent::kLate, sight.now_ns, way);
     }
     return;
   }
-  way.planner_late = false;
+  way.late_ns = -1;
   way.note.outcome = static_cast<std::int32_t>(plan.outcome);
   if (!plan.IsFound()) {
     const bool is_sure = plan.outcome == trajectory::PlanOutcome::kNoGoalPosture ||
@@ -272,11 +272,11 @@ void Ask(const WaySight& sight, WayToGoal& way) noexcept {
 
 void WayToGoal::Restart() noexcept {
   const hal::WayNote before = note;
-  const bool late = planner_late;
+  const std::int64_t late = late_ns;
   *this = WayToGoal{};
   note.plans_asked = before.plans_asked;
   note.outcome = before.outcome;
-  planner_late = late;
+  late_ns = late;
 }
 
 void ChooseWay(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
@@ -329,7 +329,7 @@ bool MayFindAWay(const config::ServoConfig& config, const WayToGoal& way) noexce
   if (!trajectory::IsPlannable(config)) {
     return false;
   }
-  const bool may_ask = way.note.tries < kMostTries && !way.is_there && !way.planner_late;
+  const bool may_ask = way.note.tries < kMostTries && !way.is_there && !way.IsPlannerLate();
   return way.note.way != Way::kLaw || may_ask;
 }
 

@@ -44,7 +44,6 @@ struct WayToGoal {
   bool is_fresh = true;         // no plan was asked for since the goal was last near
   bool is_new_goal = true;      // the goal was near since the last plan for a far one
   bool is_there = false;        // law: so near to its goal that no plan would help
-  bool planner_late = false;    // the last request had no answer in time, and none has come since
   bool keeps_posture = false;   // q_end reaches the goal: the law is pulled towards it
   std::int64_t since_ns = 0;    // time of the last change of the way, which starts smoothly
   std::int64_t asked_ns = -1;   // when the last plan or horizon was asked for; -1: none since the way changed
@@ -52,6 +51,7 @@ struct WayToGoal {
   std::int64_t held_ns = 0;     // plan: time held up less time not held up
   std::int64_t horizon_ns = -1;  // law: start of the horizon that the arm follows; -1: it follows none
   std::int64_t taken_ns = -1;    // start of the last horizon that came
+  std::int64_t late_ns = -1;     // when a plan was asked for that was late and has not come since; -1: none
   std::int64_t again_ns = 0;     // no new plan is asked for before because the target moved
   double pace = 1.0;             // law: share of its speed
   double least_off = HUGE_VAL;   // law: smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
@@ -64,6 +64,7 @@ struct WayToGoal {
   model::Vec3 p_BO_end = model::Vec3::Zero();  // the target that it reaches [m]
   model::Mat6N pull;                           // transposed: a twist of the camera at q_end to joints
 
+  [[nodiscard]] bool IsPlannerLate() const noexcept { return late_ns >= 0; }
   // A new try, from Track's beginning.
   void Restart() noexcept;
 };

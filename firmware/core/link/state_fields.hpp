@@ -90,7 +90,6 @@ void WayFields(Archive& a, T& w) noexcept {
   a(w.is_fresh);
   a(w.is_new_goal);
   a(w.is_there);
-  a(w.planner_late);
   a(w.keeps_posture);
   a(w.since_ns);
   a(w.asked_ns);
@@ -98,6 +97,7 @@ void WayFields(Archive& a, T& w) noexcept {
   a(w.held_ns);
   a(w.horizon_ns);
   a(w.taken_ns);
+  a(w.late_ns);
   a(w.again_ns);
   a(w.pace);
   a(w.least_off);

@@ -15,7 +15,7 @@ void BeginToTrack(ServoState& state) noexcept {
 
 void BeginToHold(ServoState& state) noexcept {
   state.reach.p_BO_unreachable = state.prediction.p_BO;
-  state.reach.planner_was_late = state.way.planner_late;
+  state.reach.planner_was_late = state.way.IsPlannerLate();
   if (state.mode.hold_reason == hal::HoldReason::kTargetLost ||
       state.mode.hold_reason == hal::HoldReason::kEyeDoubted) {
     state.predict.Reset();

@@ -55,16 +55,16 @@ bool HasTunedGain(const TuningState& tuning) noexcept {
 
 }  // namespace
 
-// Takes a part of the plan that was asked for. All others are dropped: no plan changes under the arm. But one
-// that comes too late shows that the planner is there.
+// Takes a part of the plan that was asked for. All others are dropped: no plan changes under the arm. But the
+// answer that came too late shows that the planner is there.
 void ServoTask::TakePlan(const trajectory::PlanPart& part) noexcept {
   if (!part.IsThere()) {
     return;
   }
   if (state_.way.asked_ns >= 0 && part.head.stamp_ns == state_.way.asked_ns) {
     static_cast<void>(state_.plans.Take(part));
-  } else {
-    state_.way.planner_late = false;
+  } else if (part.head.stamp_ns == state_.way.late_ns) {
+    state_.way.late_ns = -1;
   }
 }
 

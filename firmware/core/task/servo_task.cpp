@@ -119,7 +119,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
       control::HasNoWay(config_.law, state_.way) ||
       (control::IsUnreachable(config_.law, state_.reach) && !control::MayFindAWay(config_, state_.way));
   mode_inputs.may_try_again = control::HasMoved(state_.prediction.p_BO, state_.reach) ||
-                              (state_.reach.planner_was_late && !state_.way.planner_late);
+                              (state_.reach.planner_was_late && !state_.way.IsPlannerLate());
   mode_inputs.eye_doubted = state_.eye.doubted;
   mode_inputs.eye_suspected = state_.eye.suspected;
   moves::NoteAsked(config_, inputs.motion, state_.motion);

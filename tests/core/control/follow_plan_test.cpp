@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "firmware/core/control/count_tick.hpp"
 #include "tests/core/control/planned_way.hpp"
 #include "tests/support/random_states.hpp"
 

@@ -160,7 +160,7 @@ TEST_F(HorizonTest, PlannerThatDiesLeavesTheLaw) {
   EXPECT_NEAR(follows, 300, 2) << "300 ms from its begin, and then the law";
   EXPECT_EQ(way_.horizon_ns, -1);
   EXPECT_EQ(events_, std::vector{PlanEvent::kLate}) << "said once";
-  EXPECT_FALSE(way_.planner_late) << "the next whole plan is waited for as long as ever";
+  EXPECT_FALSE(way_.IsPlannerLate()) << "the next whole plan is waited for as long as ever";
   EXPECT_LT(way_.note.plans_asked, 10) << "it asks on, but less often";
   EXPECT_GT(way_.note.plans_asked, 4);
   Answer(PlanToGoal());

@@ -274,8 +274,10 @@ TEST_F(WayToGoalTest, AfterAStalePlanAnotherOneIsAskedFor) {
 
 TEST_F(WayToGoalTest, LatePlannerIsNotWaitedForAgain) {
   AskForPlan();
-  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 1500, 2);
+  const std::int64_t asked_ns = way_.asked_ns;
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 2500, 2);
   EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.late_ns, asked_ns);
   way_.Restart();
   EXPECT_EQ(way_.note.plans_asked, 1) << "the number of a request is never used twice";
   AskForPlan();
@@ -286,7 +288,39 @@ TEST_F(WayToGoalTest, LatePlannerIsNotWaitedForAgain) {
   ASSERT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
   way_.Restart();
   AskForPlan();
-  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 1500, 2) << "it answers again";
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 2500, 2) << "it answers again";
+}
+
+// Nobody has searched: when the planner answers, it gets all its tries.
+TEST_F(WayToGoalTest, RequestsWithoutAnAnswerAreNoTries) {
+  limits_ = kBarriers;
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(i > 0 || MayFindAWay(config_, way_));
+    AskForPlan();
+    EXPECT_EQ(way_.note.tries, 1);
+    EXPECT_GT(TicksUntil(PlanEvent::kLate), 0);
+    EXPECT_EQ(way_.note.tries, 0);
+    EXPECT_FALSE(MayFindAWay(config_, way_)) << "the law is alone";
+    Choose(300);
+    EXPECT_FALSE(HasNoWay(config_.law, way_)) << "no plan was tried";
+  }
+  way_.late_ns = -1;
+  EXPECT_TRUE(MayFindAWay(config_, way_));
+}
+
+TEST_F(WayToGoalTest, AWayMayBeFoundWhileThePlannerMayBeAskedOrItsPlanIsFollowed) {
+  EXPECT_TRUE(MayFindAWay(config_, way_));
+  config_.law.plans = false;
+  EXPECT_FALSE(MayFindAWay(config_, way_));
+  config_.law.plans = true;
+  AskForPlan();
+  way_.note.tries = 6;
+  EXPECT_TRUE(MayFindAWay(config_, way_)) << "the last one may be good";
+  ASSERT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
+  EXPECT_TRUE(MayFindAWay(config_, way_));
+  EXPECT_EQ(FollowOn(), PlanEvent::kDone);
+  Choose();
+  EXPECT_FALSE(MayFindAWay(config_, way_)) << "no plan leads nearer";
 }
 
 TEST_F(WayToGoalTest, LawKeepsThePostureAndTheTurnOfTheLastPlan) {

@@ -213,7 +213,8 @@ TEST(ServoStateTest, DigestChangesWithEachFieldOfTheWayOnAPlan) {
   EXPECT_TRUE(changed([](control::WayToGoal& w) { w.shift[0] += 1e-12; }));
   EXPECT_TRUE(changed([](control::WayToGoal& w) { w.held_ns += 1; }));
   EXPECT_TRUE(changed([](control::WayToGoal& w) { w.note.tries += 1; }));
-  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.planner_late = !w.planner_late; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.swing.angle += 1e-12; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.late_ns += 1; }));
 }
 
 // A state with an index outside its array is refused.
