@@ -73,8 +73,8 @@ TEST(Hold, GoalJustPastAJointsEndEndsInHold) {
       RunShipped("square",
                  {"arm.q_start=[1.8719, 1.6592, -1.9479, -1.5433, -0.5901, 0.6927, -1.0301]",
                   "target.position=[-0.0043, -0.0872, 0.5054]", "target.rpy_deg=[-80.38, -61.6, 171.07]",
-                  "safety.planes=[0, 0, 1, 0.03]", "run.duration_s=14"},
-                 watch.Options(14.0));
+                  "safety.planes=[0, 0, 1, 0.03]", "run.duration_s=18"},
+                 watch.Options(18.0));
   ExpectHeldAsUnreachable(s, watch);
 }
 

@@ -33,7 +33,7 @@ constexpr double kCareful = 0.25;                     // pace of the law while i
 constexpr double kCarefulS = 1.5;                     // for so long at most
 constexpr double kSlowingS = 0.4;                     // from the law's full pace to rest
 constexpr double kSlow = 0.1;                         // a joint this slow is stopped at once [rad/s, m/s]
-constexpr double kWaitS = 2.5;                        // for a plan
+constexpr double kWaitS = 2.0;                        // for a plan
 constexpr double kWaitLateS = 0.1;                    // if the last one did not come in time
 constexpr std::int64_t kAgainNs = hal::kNsPerSecond;  // between new plans because the target moved
 

@@ -9,7 +9,7 @@ namespace fovea::trajectory {
 namespace {
 
 constexpr std::int64_t kBudget = 200'000;  // of the first search; each further one has as much more
-constexpr std::int32_t kMostBudgets = 4;   // so that the servo waits long enough
+constexpr std::int32_t kMostBudgets = 3;   // so that the servo waits long enough
 
 }  // namespace
 

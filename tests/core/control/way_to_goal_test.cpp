@@ -275,7 +275,7 @@ TEST_F(WayToGoalTest, AfterAStalePlanAnotherOneIsAskedFor) {
 TEST_F(WayToGoalTest, LatePlannerIsNotWaitedForAgain) {
   AskForPlan();
   const std::int64_t asked_ns = way_.asked_ns;
-  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 2500, 2);
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 2000, 2);
   EXPECT_EQ(way_.note.way, Way::kLaw);
   EXPECT_EQ(way_.late_ns, asked_ns);
   way_.Restart();
@@ -288,7 +288,7 @@ TEST_F(WayToGoalTest, LatePlannerIsNotWaitedForAgain) {
   ASSERT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
   way_.Restart();
   AskForPlan();
-  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 2500, 2) << "it answers again";
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 2000, 2) << "it answers again";
 }
 
 // Nobody has searched: when the planner answers, it gets all its tries.

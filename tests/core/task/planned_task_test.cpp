@@ -48,7 +48,7 @@ TEST_F(PlannedTaskTest, WithADeadPlannerTheLawGoesAlone) {
   ASSERT_TRUE(RunUntil(PlanEvent::kAsked));
   const int asked = ticks_;
   ASSERT_TRUE(RunUntil(PlanEvent::kLate));
-  EXPECT_NEAR(ticks_ - asked, 2500, 5) << "and says so";
+  EXPECT_NEAR(ticks_ - asked, 2000, 5) << "and says so";
   int late = 0;
   for (int i = 0; i < 6000; ++i) {
     late += Tick().way.event == PlanEvent::kLate ? 1 : 0;
