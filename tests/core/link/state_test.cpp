@@ -28,13 +28,13 @@ static_assert(sizeof(estimate::PredictState) == 62304);
 static_assert(sizeof(estimate::EncoderWatch) == 1096);
 static_assert(sizeof(estimate::EyeWatch) == 232);
 static_assert(sizeof(task::ModeState) == 5);
-static_assert(sizeof(control::WayToGoal) == 800);
+static_assert(sizeof(control::WayToGoal) == 840);
 static_assert(sizeof(trajectory::PlanReceiver) == 14496);
 static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
 static_assert(sizeof(task::TuningState) == 544);
-static_assert(sizeof(task::ServoState) == 103296);
+static_assert(sizeof(task::ServoState) == 103344);
 
 using Buffer = std::vector<std::uint8_t>;
 
