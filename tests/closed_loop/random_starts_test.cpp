@@ -103,6 +103,14 @@ INSTANTIATE_TEST_SUITE_P(
               "target.position=[-0.0017,-0.2446,0.8639]", "target.rpy_deg=[-20.41,62.41,143.57]",
               "run.seed=901707606"},
              3.0},
+        // The eye was trusted late: the plan's pace rose faster than the joints could, and the arm left its
+        // path.
+        Hard{"TrustInAFastMotion",
+             "square",
+             {"arm.q_start=[-1.6029,-1.0666,-0.6255,-2.544,-1.6718,3.3218,-1.1766]",
+              "target.position=[-0.298,-0.8056,0.583]", "target.rpy_deg=[23.22,49.77,-73.14]",
+              "run.seed=1766776498"},
+             4.0},
         // All ways show the square from very steep sides.
         Hard{"SteepViews",
              "square",

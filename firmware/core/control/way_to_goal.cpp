@@ -8,6 +8,7 @@
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/model/rotation.hpp"
+#include "firmware/core/trajectory/joint_pace.hpp"
 #include "firmware/core/trajectory/plan_request.hpp"
 #include "firmware/core/trajectory/smooth_step.hpp"
 
@@ -55,6 +56,9 @@ constexpr double kHeldS = 0.4;
 bool IsLonger(std::int64_t ns, double s) noexcept {
   return static_cast<double>(ns) > s * static_cast<double>(hal::kNsPerSecond);
 }
+
+// The pace of a plan that the target's sight does not hold up.
+double PaceOf(double trust) noexcept { return kFirstPace + (1.0 - kFirstPace) * trust; }
 
 struct Off {
   double shift;  // [m]
@@ -220,6 +224,19 @@ Way NextWay(const WayToGoal& way) noexcept {
   return way.note.tries < kMostTries ? Way::kAwaitPlan : Way::kLaw;
 }
 
+// How fast the plan's pace may grow without more acceleration than a joint has [1/s].
+double MostPaceRate(const config::ServoConfig& config, const Plan& plan, const WayToGoal& way) noexcept {
+  trajectory::Reference at;
+  plan.At(way.t, at);
+  const double pace = PaceOf(way.trust);
+  double most = HUGE_VAL;
+  for (int i = 0; i < at.q.size(); ++i) {
+    const double left = trajectory::PaceOf(config, i).ddq_max - pace * pace * std::fabs(at.ddq[i]);
+    most = std::min(most, std::max(left, 0.0) / std::max(std::fabs(at.dq[i]), 1e-9));
+  }
+  return most;
+}
+
 void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
                 WayToGoal& way) noexcept {
   if (way.t >= plan.Duration()) {
@@ -238,7 +255,11 @@ void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const 
   const double trust_s = !sight.is_seen || sight.is_eye_suspected ? -kTrustS
                          : sight.is_eye_trusted                   ? kTrustS
                                                                   : kTrustAnywayS;
-  way.trust = std::clamp(way.trust + hal::kTickPeriodS / trust_s, 0.0, 1.0);
+  double rate = 1.0 / trust_s;
+  if (rate > 0.0 && way.trust < 1.0) {
+    rate = std::min(rate, MostPaceRate(config, plan, way) / (1.0 - kFirstPace));
+  }
+  way.trust = std::clamp(way.trust + hal::kTickPeriodS * rate, 0.0, 1.0);
   way.shift += (hal::kTickPeriodS / kShiftS) * (shift - way.shift);
   if (IsLonger(way.held_ns, kHeldS)) {
     Change(NextWay(way), PlanEvent::kHeld, sight.now_ns, way);
@@ -297,7 +318,7 @@ void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool i
   const model::VecN behind = at.q + share * way.shift - reference.q;
   const double keeps_up = std::clamp(2.0 - behind.lpNorm<Eigen::Infinity>() / kBehind, 0.0, 1.0);
   CountTick(keeps_up < 0.5, way.held_ns);
-  const double pace = keeps_up * (is_seen ? kFirstPace + (1.0 - kFirstPace) * way.trust : way.trust);
+  const double pace = keeps_up * (is_seen ? PaceOf(way.trust) : way.trust);
   way.t += pace * hal::kTickPeriodS;
   plan.At(way.t, at);
   const double growth = (trajectory::SmoothStep(way.t / plan.Duration()) - share) / hal::kTickPeriodS;
@@ -305,7 +326,7 @@ void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool i
   step.task.J.setIdentity(at.q.size(), at.q.size());
   step.task.dq_0.setZero(at.q.size());
   step.task.weight.setOnes(at.q.size());
-  step.ddq = pace * at.ddq;
+  step.ddq = pace * pace * at.ddq;
 }
 
 double SlowingPace(const WayToGoal& way, const trajectory::Reference& reference) noexcept {

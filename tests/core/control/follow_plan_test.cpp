@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/core/control/count_tick.hpp"
+#include "firmware/core/trajectory/joint_pace.hpp"
 #include "tests/core/control/planned_way.hpp"
 #include "tests/support/random_states.hpp"
 
@@ -105,6 +106,38 @@ TEST_F(FollowPlanTest, JumpOfTheEstimateMakesNoJumpOfTheWish) {
   }
   EXPECT_EQ(events_.back(), PlanEvent::kDone);
   EXPECT_LT(most, 0.05);
+}
+
+// A plan that uses 95 % of a joint's acceleration leaves little for a pace that rises.
+TEST_F(FollowPlanTest, PaceThatRisesAsksForNoMoreAccelerationThanThereIs) {
+  BeginPlan();
+  double most = 0.0;
+  trajectory::Reference at;
+  for (double t = 0.0; t < plan_.Duration(); t += hal::kTickPeriodS) {
+    plan_.At(t, at);
+    most = std::max(most, std::fabs(at.ddq[0]));
+  }
+  config_.arm.joints[0].ddq_max *= most / 0.95 / trajectory::PaceOf(config_, 0).ddq_max;
+  const double limit = trajectory::PaceOf(config_, 0).ddq_max;
+  for (const int tick : {200, 400, 600, 900}) {  // from which the eye is trusted
+    StandAt(test::Ready());
+    way_ = WayToGoal{};
+    BeginPlan();
+    way_.trust = 0.0;
+    is_eye_trusted_ = false;
+    double used = 0.0;
+    double before = 0.0;
+    for (int i = 0; way_.note.way == Way::kPlan && i < 5000; ++i) {
+      is_eye_trusted_ = i >= tick;
+      Follow();
+      used = std::max(used, std::fabs(step_.task.v[0] - before) / hal::kTickPeriodS / limit);
+      before = step_.task.v[0];
+      Choose();
+    }
+    EXPECT_EQ(events_.back(), PlanEvent::kDone);
+    std::printf("trusted after %d ms: %.3f of the acceleration's limit\n", tick, used);
+    EXPECT_LT(used, 1.02);
+  }
 }
 
 TEST_F(FollowPlanTest, TargetThatIsElsewhereNeedsANewPlan) {

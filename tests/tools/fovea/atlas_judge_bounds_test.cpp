@@ -96,7 +96,8 @@ TEST(AtlasJudgeBounds, GoalsNearJointEndsCount) {
     bool is_straight = true;
     for (int k = 0; k <= 100; ++k) {
       const VecN q = one.q + 0.01 * k * (one.goal - one.q);
-      is_straight = is_straight && checks.OnTheWay(checks.At(q), one.start.TargetPose());
+      is_straight =
+          is_straight && checks.OnTheWay(checks.At(q), one.start.TargetPose(), checks.LeastCosine());
     }
     const Judgement judgement = JudgeStart(narrow, one.start, kLittle);
     straight += is_straight ? 1 : 0;
@@ -137,7 +138,8 @@ TEST(AtlasJudgeBounds, WaysOverTheTableCountAsFarAsTheServoGoes) {
     bool is_straight = true;
     for (int k = 0; k <= 100; ++k) {
       way.emplace_back(one.q + 0.01 * k * (one.goal - one.q));
-      is_straight = is_straight && checks.OnTheWay(checks.At(way.back()), one.start.TargetPose());
+      is_straight =
+          is_straight && checks.OnTheWay(checks.At(way.back()), one.start.TargetPose(), checks.LeastCosine());
     }
     const Scene low = WithTableBelow(narrow, way, 0.003);
     if (is_straight) {

@@ -43,6 +43,19 @@ bool Meets(const BenchThing& thing, const model::Vec3& a_B, const model::Vec3& b
 
 std::span<const BenchThing> BenchThings() { return kThings; }
 
+std::vector<double> BoxesOfThings() {
+  std::vector<double> boxes;
+  for (const BenchThing& thing : kThings) {
+    const model::Mat3 R_BT = model::RotationOf({0.0, 0.0, thing.yaw});
+    const model::Vec3 half = 0.5 * R_BT.cwiseAbs() * thing.size;
+    for (const model::Vec3& corner :
+         {model::Vec3(thing.centre_B - half), model::Vec3(thing.centre_B + half)}) {
+      boxes.insert(boxes.end(), corner.begin(), corner.end());
+    }
+  }
+  return boxes;
+}
+
 bool ThingInTheWay(const model::Vec3& a_B, const model::Vec3& b_B, double clear) {
   return std::any_of(kThings.begin(), kThings.end(),
                      [&](const BenchThing& thing) { return Meets(thing, a_B, b_B, clear); });

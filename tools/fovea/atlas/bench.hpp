@@ -6,6 +6,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "firmware/core/model/types.hpp"
 
@@ -22,6 +23,10 @@ struct BenchThing {
 inline constexpr double kThingHeight = 0.03;
 
 [[nodiscard]] std::span<const BenchThing> BenchThings();
+
+// The upright boxes around the things, as the key safety.boxes has them, for a servo that is told what stands
+// on its bench: low x, y, z, high x, y, z of each [m] in B.
+[[nodiscard]] std::vector<double> BoxesOfThings();
 
 // Whether the segment from `a_B` to `b_B` [m] meets a thing, enlarged by `clear` [m] on each side.
 [[nodiscard]] bool ThingInTheWay(const model::Vec3& a_B, const model::Vec3& b_B, double clear);

@@ -24,7 +24,7 @@ constexpr double kEdgePx = 30.0;
 constexpr int kPerSide = 4;  // points of a flat target's side that are looked at
 // Along a path.
 constexpr double kDepthOnTheWay = 0.05;  // [m]
-constexpr double kSteepest = 0.2;        // cosine between a flat target's normal and the line of sight
+constexpr double kSteepest = 0.2;        // cosine of a plate's tilt
 // Of the links, only these may come near a plane: those before them stand on the table.
 constexpr std::size_t kOuterLinks = 4;
 
@@ -341,19 +341,30 @@ bool StartChecks::IsRegular(const StartPosture& posture) const {
 }
 
 bool StartChecks::StandsAtGoal(const StartPosture& posture, const Pose& X_BO) const {
-  return IsRegular(posture) && InsideBarrier(posture) && ClearOfSolids(posture) &&
-         !ArmInTheWay(posture, X_BO) && !BenchInTheWay(posture, X_BO);
+  return IsRegular(posture) && CosineTo(posture, X_BO) > LeastCosine() && InsideBarrier(posture) &&
+         ClearOfSolids(posture) && !ArmInTheWay(posture, X_BO) && !BenchInTheWay(posture, X_BO);
 }
 
 bool StartChecks::StandsAtGoalByServo(const StartPosture& posture, const Pose& X_BO) const {
-  return IsRegular(posture) && OnTheWay(posture, X_BO);
+  return IsRegular(posture) && OnTheWay(posture, X_BO, LeastCosine());
 }
 
-bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO) const {
+double StartChecks::CosineTo(const StartPosture& posture, const Pose& X_BO) const {
+  if (features::TraitsOf(scene_.servo.feature.target).body == features::TargetBody::kBall) {
+    return 1.0;
+  }
   const Pose X_CO = posture.X_BC.Inverse() * X_BO;
-  const bool faces =
-      !scene_.servo.feature.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
-  return X_CO.p.z() > kDepthOnTheWay && faces && !OutOfViewOnTheWay(X_CO) &&
+  return X_CO.R.col(2).dot(X_CO.p) / X_CO.p.norm();
+}
+
+double StartChecks::LeastCosine() const {
+  const bool is_disc = features::TraitsOf(scene_.servo.feature.target).body == features::TargetBody::kDisc;
+  return is_disc ? scene_.servo.guard.view.disc_cosine_min : kSteepest;
+}
+
+bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO, double least_cosine) const {
+  const Pose X_CO = posture.X_BC.Inverse() * X_BO;
+  return X_CO.p.z() > kDepthOnTheWay && CosineTo(posture, X_BO) > least_cosine && !OutOfViewOnTheWay(X_CO) &&
          InsideBarrier(posture, kOnTheWay) && ClearOfSolids(posture, kOnTheWay) &&
          !ArmInTheWay(posture, X_BO, kOnTheWay) && !BenchInTheWay(posture, X_BO, kOnTheWay) &&
          !IsHidden(posture, X_BO);

@@ -40,9 +40,15 @@ class StartChecks {
   // one that the servo would not go there.
   [[nodiscard]] bool StandsAtGoal(const StartPosture& posture, const model::Pose& X_BO) const;
 
+  // Cosine of a flat target's tilt: between its normal and the line of sight. 1 for a ball.
+  [[nodiscard]] double CosineTo(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when a posture on a path meets all conditions. The bounds are less strict than at the ends of drawn
   // starts: those that the servo's guard keeps, so that no way is denied that the servo may take.
-  [[nodiscard]] bool OnTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
+  // `least_cosine`: of the tilt; a start with a larger tilt may be left.
+  [[nodiscard]] bool OnTheWay(const StartPosture& posture, const model::Pose& X_BO,
+                              double least_cosine) const;
+  // The least cosine of a tilt that the servo may choose.
+  [[nodiscard]] double LeastCosine() const;
   // The same of a posture that reaches the goal, which must not be too singular either.
   [[nodiscard]] bool StandsAtGoalByServo(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when the target is in front of the camera but not completely in the picture, by the path's bound.

@@ -50,7 +50,9 @@ Judgement JudgeStart(const Scene& scene, const Start& start, const JudgeEffort& 
   WayProblem problem;
   problem.least = postures.least();
   problem.most = postures.most();
-  problem.is_allowed = [&](const VecN& at) { return checks.OnTheWay(checks.At(at), X_BO); };
+  const double at_start = checks.CosineTo(checks.At(q), X_BO);
+  const double least_cosine = std::min(checks.LeastCosine(), at_start - kSame);
+  problem.is_allowed = [&](const VecN& at) { return checks.OnTheWay(checks.At(at), X_BO, least_cosine); };
   problem.pull = [&](const VecN& at) { return postures.PulledIntoView(at, X_BO); };
   problem.draws = effort.draws;
   Judgement judgement;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/atlas/scene.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +17,7 @@
 #include "firmware/host/robots/robot.hpp"
 #include "firmware/host/robots/shipped_robots.hpp"
 #include "tools/bench/common/shell.hpp"
+#include "tools/fovea/atlas/bench.hpp"
 #include "tools/fovea/atlas/files.hpp"
 
 namespace fovea::atlas {
@@ -67,7 +71,8 @@ vision::Intrinsics CameraOf(vision::Intrinsics camera, double hfov_deg) {
 const char* ScenarioOf(const std::string& target) { return target == "sphere" ? "ball" : target.c_str(); }
 
 std::vector<std::string> SceneAssignments(const std::vector<std::string>& callers) {
-  std::vector<std::string> assignments{"safety.planes=[0,0,1,0.03]"};
+  std::vector<std::string> assignments{"safety.planes=[0,0,1,0.03]",
+                                       fmt::format("safety.boxes=[{:.4f}]", fmt::join(BoxesOfThings(), ","))};
   assignments.insert(assignments.end(), callers.begin(), callers.end());
   return assignments;
 }
