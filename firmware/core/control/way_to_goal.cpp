@@ -326,7 +326,7 @@ void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool i
   step.task.J.setIdentity(at.q.size(), at.q.size());
   step.task.dq_0.setZero(at.q.size());
   step.task.weight.setOnes(at.q.size());
-  step.ddq = pace * pace * at.ddq;
+  step.ddq = pace * at.ddq;
 }
 
 double SlowingPace(const WayToGoal& way, const trajectory::Reference& reference) noexcept {
