@@ -24,7 +24,8 @@ constexpr double kMetrePerRad = 0.1;
 constexpr double kFar = 0.12;           // from here on a plan is worth a stop [m]
 constexpr double kNear = 0.03;          // after a goal that was this near, a far one is a new one
 constexpr double kMovingTarget = 0.05;  // a faster target is followed by the law [m/s]
-constexpr double kIdleS = 0.4;          // without progress: the law is stalled
+constexpr double kIdleS = 0.4;          // without progress: the law is stalled,
+constexpr double kIdleLateS = 2.0;      // and asks again although the last plan has not come
 constexpr double kNearer = 0.8;         // progress: the distance falls to this share
 constexpr double kThereM = 0.0015;      // the law alone reaches a goal this near
 constexpr double kThereRad = 0.006;
@@ -127,7 +128,8 @@ void GoOnByLaw(const config::ServoConfig& config, const WaySight& sight, WayToGo
       may_plan && far && !sight.is_told_apart && !IsLonger(sight.now_ns - way.since_ns, kCarefulS);
   way.pace = is_careful ? kCareful : std::min(way.pace + hal::kTickPeriodS / kSlowingS, 1.0);
   // If limits stop the law, a plan's motion has to tell the poses apart.
-  if (may_plan && ((far && sight.is_told_apart) || IsLonger(way.stalled_ns, kIdleS))) {
+  const double idle_s = way.IsPlannerLate() ? kIdleLateS : kIdleS;
+  if (may_plan && ((far && sight.is_told_apart) || IsLonger(way.stalled_ns, idle_s))) {
     if (far && way.is_new_goal) {
       way.note.tries = 0;
     } else if (far) {
@@ -342,7 +344,7 @@ bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept {
 bool IsHeldUp(const WayToGoal& way) noexcept { return way.note.way == hal::Way::kPlan && way.held_ns > 0; }
 
 bool HasNoWay(const config::LawConfig& config, const WayToGoal& way) noexcept {
-  return way.note.way == hal::Way::kLaw && way.note.tries >= kMostTries &&
+  return way.note.way == hal::Way::kLaw && (way.note.tries >= kMostTries || way.IsPlannerLate()) &&
          IsLonger(way.stalled_ns, config.unreachable_s);
 }
 

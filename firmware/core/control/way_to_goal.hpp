@@ -109,7 +109,8 @@ void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& refer
 [[nodiscard]] bool IsHeldUp(const WayToGoal& way) noexcept;
 
 // True if limits have stopped the law short of the goal for servo.unreachable_s, and all plans were asked
-// for in vain. The law may then stand so near to its goal that its error tells nothing. Real-time: yes.
+// for in vain or the planner does not answer. The law may then stand so near to its goal that its error tells
+// nothing. Real-time: yes.
 [[nodiscard]] bool HasNoWay(const config::LawConfig& config, const WayToGoal& way) noexcept;
 
 // True if a plan is under way, awaited, or may still be asked for: then limits that stop the law do not make

@@ -304,6 +304,8 @@ TEST_F(WayToGoalTest, RequestsWithoutAnAnswerAreNoTries) {
     Choose(300);
     EXPECT_FALSE(HasNoWay(config_.law, way_)) << "no plan was tried";
   }
+  Choose(900);
+  EXPECT_TRUE(HasNoWay(config_.law, way_)) << "limits stop the law, and nobody plans";
   way_.late_ns = -1;
   EXPECT_TRUE(MayFindAWay(config_, way_));
 }
