@@ -59,7 +59,7 @@ TEST_P(DeadPlanner, LawGoesAloneFromTheStart) {
   Run(GetParam(), {"faults.planner_loss_s=[0, 1e6]"});
   EXPECT_EQ(Count(PlanEvent::kTaken), 0);
   EXPECT_GE(Count(PlanEvent::kLate), 1);
-  EXPECT_NEAR(First(PlanEvent::kLate) - First(PlanEvent::kAsked), 1.5, 0.01);
+  EXPECT_NEAR(First(PlanEvent::kLate) - First(PlanEvent::kAsked), 2.0, 0.01);
   ASSERT_EQ(summary_.injected.size(), 1U);
   EXPECT_NEAR(summary_.injected[0].noticed["plan_late"], First(PlanEvent::kLate), 0.01);
 }
