@@ -33,8 +33,8 @@ constexpr double kMoreEachRound = 1.5;
 // budget, or this much work.
 constexpr double kStrictShare = 0.5;
 constexpr double kStrictWork = 80'000.0;
-constexpr double kWideWork =
-    240'000.0;  // shows a target from very steep sides after this: in no first search
+// Beyond this work, which no first search of the servo has, it shows a target from very steep sides.
+constexpr double kWideWork = 240'000.0;
 // For making a path shorter: the larger of these.
 constexpr double kShortenWork = 4000.0;
 constexpr double kShortenWorkOfRad = 1000.0;

@@ -4,21 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/core/control/camera_pull.hpp"
 #include "firmware/core/control/count_tick.hpp"
-#include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/rotation.hpp"
 
 namespace fovea::control {
 namespace {
 
-constexpr double kNearGoal = 0.03;      // distance from the goal [m]
-constexpr double kAtRest = 0.05;        // speed of a disc that the arm need not follow [m/s]
-constexpr double kWorthM = 3e-4;        // distance of the two centres [m]
-constexpr double kRate = 0.15;          // of the line of sight [rad/s]
-constexpr double kStartS = 0.3;         // until this rate
-constexpr double kMost = 0.4;           // of Swing::angle; the poses differ after about 0.08 rad
-constexpr double kBarredS = 0.2;        // until it turns back
-constexpr double kSwingDamping = 1e-4;  // of J J^T [m^2, rad^2]
+constexpr double kNearGoal = 0.03;  // distance from the goal [m]
+constexpr double kAtRest = 0.05;    // speed of a disc that the arm need not follow [m/s]
+constexpr double kWorthM = 3e-4;    // distance of the two centres [m]
+constexpr double kRate = 0.15;      // of the line of sight [rad/s]
+constexpr double kStartS = 0.3;     // until this rate
+constexpr double kMost = 0.4;       // of Swing::angle; the poses differ after about 0.08 rad
+constexpr double kBarredS = 0.2;    // until it turns back
 
 // The part of the normal across the line of sight.
 model::Vec3 Across(const SwungDisc& disc) noexcept {
@@ -46,11 +45,7 @@ void AddSwing(const SwungDisc& disc, Swing& swing, MotionTask& task) noexcept {
   model::Vec6 V_BC_C;  // the disc's centre stays where it is in the picture
   V_BC_C.head<3>() = model::Cross(disc.p_CO, w_C);
   V_BC_C.tail<3>() = w_C;
-  model::Mat6 A = disc.J_C.lazyProduct(disc.J_C.transpose());
-  A.diagonal().array() += kSwingDamping;
-  model::FactorCholesky(A);
-  model::SolveCholesky(A, V_BC_C);
-  const model::VecN dq = disc.J_C.transpose().lazyProduct(V_BC_C);
+  const model::VecN dq = CameraPull(disc.J_C).transpose().lazyProduct(V_BC_C);
   CountTick(disc.limits != 0, swing.barred_ns);
   if (swing.side == 0.0) {
     swing.side = task.dq_0.dot(dq) < 0.0 ? -1.0 : 1.0;

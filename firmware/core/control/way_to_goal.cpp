@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "firmware/core/control/camera_pull.hpp"
 #include "firmware/core/control/count_tick.hpp"
 #include "firmware/core/features/equal_turn.hpp"
-#include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
@@ -46,7 +46,6 @@ constexpr double kElsewhereRad = 0.25;
 constexpr double kSamePlaceM = 0.2;    // as near as this, the plan's end is a posture to keep
 constexpr double kShiftMost = 0.3;     // of the plan's end [rad]
 constexpr double kShiftS = 0.05;       // time constant with which the end follows the estimate
-constexpr double kDamping = 1e-4;      // of J J^T [m^2, rad^2]
 constexpr double kTrustS = 0.1;        // until a sound eye is trusted, and until one that sees nothing is not
 constexpr double kTrustAnywayS = 1.5;  // until one is that had nothing to show
 constexpr double kFirstPace = 0.5;     // without trust
@@ -173,11 +172,9 @@ void Take(const config::ServoConfig& config, const Plan& plan, const WaySight& s
   model::ArmPoses poses;
   model::ComputePoses(config.arm, end.q, poses);
   way.X_BC_end = poses.X_BE * config.X_EC;
-  model::ComputeJacobian(config.arm, poses, config.X_EC, way.pull);
-  model::Mat6 A = way.pull.lazyProduct(way.pull.transpose());
-  A.diagonal().array() += kDamping;
-  model::FactorCholesky(A);
-  model::SolveCholesky(A, way.pull);
+  model::Mat6N J_C;
+  model::ComputeJacobian(config.arm, poses, config.X_EC, J_C);
+  way.pull = CameraPull(J_C);
 }
 
 void AwaitPlan(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,

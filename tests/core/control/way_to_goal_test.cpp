@@ -294,8 +294,8 @@ TEST_F(WayToGoalTest, LatePlannerIsNotWaitedForAgain) {
 // Nobody has searched: when the planner answers, it gets all its tries.
 TEST_F(WayToGoalTest, RequestsWithoutAnAnswerAreNoTries) {
   limits_ = kBarriers;
+  EXPECT_TRUE(MayFindAWay(config_, way_));
   for (int i = 0; i < 10; ++i) {
-    EXPECT_TRUE(i > 0 || MayFindAWay(config_, way_));
     AskForPlan();
     EXPECT_EQ(way_.note.tries, 1);
     EXPECT_GT(TicksUntil(PlanEvent::kLate), 0);

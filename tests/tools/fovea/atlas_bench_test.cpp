@@ -44,6 +44,29 @@ TEST(AtlasBenchTest, EveryObjectOnTheTableIsInTheAtlas) {
   EXPECT_GT(high, 100);
 }
 
+// What the servo is told: each upright box holds its thing and touches it on all sides.
+TEST(AtlasBenchTest, BoxesOfThingsFitThem) {
+  const std::vector<double> boxes = BoxesOfThings();
+  const auto things = BenchThings();
+  ASSERT_EQ(boxes.size(), 6 * things.size());
+  for (std::size_t k = 0; k < things.size(); ++k) {
+    Vec3 low = Vec3::Constant(HUGE_VAL);
+    Vec3 high = -low;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 sign((corner & 1) != 0 ? 0.5 : -0.5, (corner & 2) != 0 ? 0.5 : -0.5,
+                      (corner & 4) != 0 ? 0.5 : -0.5);
+      const Vec3 p_B = things[k].centre_B +
+                       model::RotationOf({0.0, 0.0, things[k].yaw}) * sign.cwiseProduct(things[k].size);
+      low = low.cwiseMin(p_B);
+      high = high.cwiseMax(p_B);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(boxes[6 * k + axis], low[static_cast<Eigen::Index>(axis)], 1e-12);
+      EXPECT_NEAR(boxes[6 * k + 3 + axis], high[static_cast<Eigen::Index>(axis)], 1e-12);
+    }
+  }
+}
+
 TEST(AtlasBenchTest, SegmentMeetsAnObjectThatHoldsOneOfItsPoints) {
   test::RandomStates random(91);
   int met = 0;

@@ -83,6 +83,20 @@ std::vector<Case> Cases(const Scene& scene, int count) {
   return cases;
 }
 
+std::vector<VecN> StraightWay(const Case& one) {
+  std::vector<VecN> way;
+  for (int k = 0; k <= 100; ++k) {
+    way.emplace_back(one.q + 0.01 * k * (one.goal - one.q));
+  }
+  return way;
+}
+
+bool IsAllowed(const std::vector<VecN>& way, const Case& one, const StartChecks& checks) {
+  return std::all_of(way.begin(), way.end(), [&](const VecN& q) {
+    return checks.OnTheWay(checks.At(q), one.start.TargetPose(), checks.LeastCosine());
+  });
+}
+
 constexpr JudgeEffort kLittle{.descents = 40, .searches = 1, .draws = 3000};
 
 // Six joints: near each goal posture there is no other.
@@ -93,12 +107,7 @@ TEST(AtlasJudgeBounds, GoalsNearJointEndsCount) {
   for (const Case& one : Cases(scene, 12)) {
     const Scene narrow = InACorridor(scene, one.q, one.goal);
     const StartChecks checks(narrow);
-    bool is_straight = true;
-    for (int k = 0; k <= 100; ++k) {
-      const VecN q = one.q + 0.01 * k * (one.goal - one.q);
-      is_straight =
-          is_straight && checks.OnTheWay(checks.At(q), one.start.TargetPose(), checks.LeastCosine());
-    }
+    const bool is_straight = IsAllowed(StraightWay(one), one, checks);
     const Judgement judgement = JudgeStart(narrow, one.start, kLittle);
     straight += is_straight ? 1 : 0;
     with_way += is_straight && judgement.has_way ? 1 : 0;
@@ -126,6 +135,48 @@ TEST(AtlasJudgeBounds, GoalsOverTheTableCountAsFarAsTheServoGoes) {
   EXPECT_GE(compared, 3);
 }
 
+// Goals that show a disc at a larger tilt than the servo chooses do not count; a start with a larger one may
+// be left.
+TEST(AtlasJudgeBounds, GoalsShowADiscAtNoLargerTiltThanTheServo) {
+  constexpr double kMost = 0.5;  // [rad]
+  Scene scene = test::AtlasScene("panda", "circle");
+  scene.servo.guard.view.disc_cosine_min = 0.0;
+  const std::vector<Case> cases = Cases(scene, 12);
+  Scene bounded = scene;
+  bounded.servo.guard.view.disc_cosine_min = std::cos(kMost);
+  const auto goals_of = [](const Scene& of, const Case& one) {
+    std::mt19937_64 engine(2);
+    return GoalPostures(of, GoalPostures::Bounds::kOfServo)
+        .Find(one.q, one.start.TargetPose(), {.far = 40}, engine);
+  };
+  const StartChecks checks(bounded);
+  int past = 0;
+  int within = 0;
+  int left = 0;
+  int steep_starts = 0;
+  for (const Case& one : cases) {
+    const auto tilt = [&](const VecN& q) {
+      return std::acos(checks.CosineTo(checks.At(q), one.start.TargetPose()));
+    };
+    for (const VecN& goal : goals_of(scene, one)) {
+      past += tilt(goal) > kMost ? 1 : 0;
+    }
+    for (const VecN& goal : goals_of(bounded, one)) {
+      ++within;
+      EXPECT_LE(tilt(goal), kMost);
+    }
+    if (tilt(one.q) > kMost) {
+      ++steep_starts;
+      left += JudgeStart(bounded, one.start, kLittle).has_way ? 1 : 0;
+    }
+  }
+  std::cout << past << " goals without the bound are past it, " << within << " with it are within; " << left
+            << " of " << steep_starts << " starts past it have a way\n";
+  EXPECT_GT(past, 5);
+  EXPECT_GT(within, 5);
+  EXPECT_GT(left, 0);
+}
+
 // The hand is nearest to the table on its way.
 TEST(AtlasJudgeBounds, WaysOverTheTableCountAsFarAsTheServoGoes) {
   const Scene scene = test::AtlasScene("ur5e", "square");
@@ -134,15 +185,9 @@ TEST(AtlasJudgeBounds, WaysOverTheTableCountAsFarAsTheServoGoes) {
   for (const Case& one : Cases(scene, 40)) {
     const Scene narrow = InACorridor(scene, one.q, one.goal);
     const StartChecks checks(narrow);
-    std::vector<VecN> way;
-    bool is_straight = true;
-    for (int k = 0; k <= 100; ++k) {
-      way.emplace_back(one.q + 0.01 * k * (one.goal - one.q));
-      is_straight =
-          is_straight && checks.OnTheWay(checks.At(way.back()), one.start.TargetPose(), checks.LeastCosine());
-    }
+    const std::vector<VecN> way = StraightWay(one);
     const Scene low = WithTableBelow(narrow, way, 0.003);
-    if (is_straight) {
+    if (IsAllowed(way, one, checks)) {
       ++compared;
       with_way += JudgeStart(low, one.start, kLittle).has_way ? 1 : 0;
     }
