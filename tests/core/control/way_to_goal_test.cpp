@@ -136,13 +136,15 @@ TEST_F(WayToGoalTest, LawThatLimitsStopAsksForAPlan) {
 // As long as the distance shrinks, limits on the way do not matter.
 TEST_F(WayToGoalTest, LawThatMakesProgressAsksForNoPlan) {
   limits_ = kBarriers;
-  for (double off = 0.08; off > 1e-3; off *= 0.75) {
+  double off = 0.08;
+  for (int i = 0; i < 16; ++i, off *= 0.75) {
     model::VecN q = q_goal_;
     q[0] -= off;
     StandAt(q);
     Choose(300);
     EXPECT_EQ(way_.note.plans_asked, 0) << off;
   }
+  EXPECT_NEAR(off, 8e-4, 1e-4);
   StandAt(q_goal_);
   Choose(5 * kSecond);
   EXPECT_EQ(way_.note.way, Way::kLaw) << "at the goal limits do not matter";
