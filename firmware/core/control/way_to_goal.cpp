@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "firmware/core/barriers/barrier_speed.hpp"
 #include "firmware/core/control/camera_pull.hpp"
 #include "firmware/core/control/count_tick.hpp"
 #include "firmware/core/features/equal_turn.hpp"
@@ -309,8 +310,20 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, const P
   }
 }
 
-void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool is_seen, WayToGoal& way,
-                PlanStep& step) noexcept {
+// The velocity that takes joints back to a plan from which they are `behind`: no faster than they can stop
+// there.
+model::VecN BackToPlan(const config::ServoConfig& config, const model::VecN& behind) noexcept {
+  model::VecN v = kGain * behind;
+  for (int i = 0; i < v.size(); ++i) {
+    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
+    const double most = barriers::BarrierSpeed(std::fabs(behind[i]), pace.deceleration, pace.reaction_s);
+    v[i] = std::clamp(v[i], -most, most);
+  }
+  return v;
+}
+
+void FollowPlan(const config::ServoConfig& config, const Plan& plan, const trajectory::Reference& reference,
+                bool is_seen, WayToGoal& way, PlanStep& step) noexcept {
   trajectory::Reference at;
   plan.At(way.t, at);
   const double share = trajectory::SmoothStep(way.t / plan.Duration());
@@ -321,7 +334,7 @@ void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool i
   way.t += pace * hal::kTickPeriodS;
   plan.At(way.t, at);
   const double growth = (trajectory::SmoothStep(way.t / plan.Duration()) - share) / hal::kTickPeriodS;
-  step.task.v = pace * at.dq + growth * way.shift + kGain * behind;
+  step.task.v = pace * at.dq + growth * way.shift + BackToPlan(config, behind);
   step.task.J.setIdentity(at.q.size(), at.q.size());
   step.task.dq_0.setZero(at.q.size());
   step.task.weight.setOnes(at.q.size());

@@ -97,8 +97,9 @@ struct PlanStep {
 };
 // Only in way kPlan. Moves the plan's time on; a plan that the reference cannot follow waits for it.
 // Real-time: yes.
-void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& reference, bool is_seen,
-                WayToGoal& way, PlanStep& step) noexcept;
+void FollowPlan(const config::ServoConfig& config, const trajectory::Plan& plan,
+                const trajectory::Reference& reference, bool is_seen, WayToGoal& way,
+                PlanStep& step) noexcept;
 
 // The law's pace with which an arm that awaits a plan comes to rest; 0: it stops at once, because it is slow.
 // A stop of the joints would end the law's motion, but not keep the target in the picture: a turn of the

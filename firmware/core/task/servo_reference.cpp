@@ -144,7 +144,8 @@ void ServoTask::ChooseTheWay() noexcept {
     estimate::ForgetSteering(state_.eye);
   }
   if (state_.way.note.way == hal::Way::kPlan) {
-    control::FollowPlan(state_.plans.plan(), state_.reference, sight.is_seen, state_.way, state_.plan_step);
+    control::FollowPlan(config_, state_.plans.plan(), state_.reference, sight.is_seen, state_.way,
+                        state_.plan_step);
   }
   state_.on_horizon = !HasTunedGain(state_.tuning) &&
                       control::FollowHorizon(config_, sight, state_.plans, state_.way, state_.plan_step);

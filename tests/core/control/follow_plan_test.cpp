@@ -108,6 +108,41 @@ TEST_F(FollowPlanTest, JumpOfTheEstimateMakesNoJumpOfTheWish) {
   EXPECT_LT(most, 0.05);
 }
 
+// A joint that a barrier has pushed off the plan goes back as fast as it can stop there, and does not swing
+// over.
+TEST_F(FollowPlanTest, JointFarOffThePlanComesBackWithoutSwingingOver) {
+  for (const double off : {0.03, 0.1, 0.2}) {
+    BeginPlan();
+    FollowFor(300);
+    const double most = trajectory::PaceOf(config_, 1).ddq_max * hal::kTickPeriodS;
+    reference_.q[1] += off;
+    reference_.dq[1] = 0.0;
+    double over = 0.0;
+    int ticks = 0;
+    trajectory::Reference at;
+    for (; ticks < 1500; ++ticks) {
+      FollowPlan(config_, plan_, reference_, is_seen_, way_, step_);
+      // As fast as its acceleration allows.
+      const double dq = step_.task.v[1] - reference_.dq[1];
+      reference_.q += hal::kTickPeriodS * step_.task.v;
+      reference_.q[1] -= hal::kTickPeriodS * (dq - std::clamp(dq, -most, most));
+      const double before = reference_.dq[1];
+      reference_.dq = step_.task.v;
+      reference_.dq[1] = before + std::clamp(dq, -most, most);
+      plan_.At(way_.t, at);
+      over = std::max(over, at.q[1] - reference_.q[1]);
+      if (std::fabs(at.q[1] - reference_.q[1]) < 1e-3 && ticks > 100) {
+        break;
+      }
+    }
+    std::printf("%.2f rad off: back after %d ms, %.4f rad over\n", off, ticks, over);
+    EXPECT_LT(ticks, 1000);
+    EXPECT_LT(over, 2e-3);
+    StandAt(test::Ready());
+    way_ = WayToGoal{};
+  }
+}
+
 // A plan that uses 95 % of a joint's acceleration leaves little for a pace that rises.
 TEST_F(FollowPlanTest, PaceThatRisesAsksForNoMoreAccelerationThanThereIs) {
   BeginPlan();

@@ -122,7 +122,7 @@ class PlannedWay : public testing::Test {
   }
   // One tick on the plan: the reference moves as wished, or stands if it is `held`.
   void Follow(bool held = false) {
-    FollowPlan(plan_, reference_, is_seen_, way_, step_);
+    FollowPlan(config_, plan_, reference_, is_seen_, way_, step_);
     if (!held) {
       reference_.q += hal::kTickPeriodS * step_.task.v;
       reference_.dq = step_.task.v;
