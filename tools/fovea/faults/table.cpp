@@ -178,7 +178,7 @@ const std::vector<Fault>& Table() {
        "planner_loss",
        true,
        {{0.2, {}, "0.2 s", "a busy computer: the plan comes late"},
-        {3.0, {}, "3 s", "twice as long as the servo waits for a plan"},
+        {3.0, {}, "3 s", "longer than the servo waits for a plan"},
         {kForever, {}, "for ever", "a planner that has died"}}}};
   return table;
 }
