@@ -266,6 +266,18 @@ void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const 
   }
 }
 
+// The velocity that takes joints back to a plan from which they are `behind`: no faster than they can stop
+// there.
+model::VecN BackToPlan(const config::ServoConfig& config, const model::VecN& behind) noexcept {
+  model::VecN v = kGain * behind;
+  for (int i = 0; i < v.size(); ++i) {
+    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
+    const double most = barriers::BarrierSpeed(std::fabs(behind[i]), pace.deceleration, pace.reaction_s);
+    v[i] = std::clamp(v[i], -most, most);
+  }
+  return v;
+}
+
 }  // namespace
 
 bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept {
@@ -308,18 +320,6 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, const P
     case Way::kAwaitPlan: AwaitPlan(config, sight, plan, way); return;
     case Way::kPlan: GoOnByPlan(config, sight, plan, way); return;
   }
-}
-
-// The velocity that takes joints back to a plan from which they are `behind`: no faster than they can stop
-// there.
-model::VecN BackToPlan(const config::ServoConfig& config, const model::VecN& behind) noexcept {
-  model::VecN v = kGain * behind;
-  for (int i = 0; i < v.size(); ++i) {
-    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
-    const double most = barriers::BarrierSpeed(std::fabs(behind[i]), pace.deceleration, pace.reaction_s);
-    v[i] = std::clamp(v[i], -most, most);
-  }
-  return v;
 }
 
 void FollowPlan(const config::ServoConfig& config, const Plan& plan, const trajectory::Reference& reference,
